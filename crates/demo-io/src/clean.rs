@@ -19,7 +19,7 @@ pub(crate) fn clean(drafts: &mut RawRecordings, channels: &[String], options: &R
         leave_out_constant(drafts, channels);
     }
     if options.context.is_empty() {
-        leave_out_moving_environment(drafts);
+        leave_out_moving_environment(drafts, channels);
         refuse_moving_context(drafts)?;
     }
     name_units(drafts, options)?;
@@ -96,12 +96,16 @@ fn not_recorded(missing: usize, samples: usize, nan: Nan) -> Option<Finding> {
     (missing > 0).then(|| remark(what, "check the recorder: what is missing is often missing where it matters"))
 }
 
-/// The environment of LeRobot is context if it stays as it is in every episode and differs between them; else it is not used.
-fn leave_out_moving_environment(drafts: &mut RawRecordings) {
+/// The environment of LeRobot is context if it stays as it is in every episode and differs between them; else it is not used. Where
+/// `channels` have been read before, they tell.
+fn leave_out_moving_environment(drafts: &mut RawRecordings, channels: &[String]) {
     let n = drafts.channels.len();
     let is_environment = |channel: &Channel| channel.name.starts_with(ENVIRONMENT);
     let stays: Vec<bool> = drafts.channels.iter().map(|channel| !is_environment(channel)).collect();
     if stays.iter().all(|&stays| stays) {
+        return;
+    }
+    if channels.iter().any(|name| name.starts_with(ENVIRONMENT)) {
         return;
     }
     let part = |sample: &[f64]| -> Vec<f64> {
@@ -115,7 +119,7 @@ fn leave_out_moving_environment(drafts: &mut RawRecordings) {
         let first = samples.next();
         samples.any(|sample| Some(&sample) != first.as_ref())
     };
-    if differs && !drafts.episodes.iter().any(moves) {
+    if channels.is_empty() && differs && !drafts.episodes.iter().any(moves) {
         return;
     }
     let names: Vec<&str> =
@@ -294,14 +298,21 @@ mod tests {
     #[test]
     fn an_environment_stays_if_it_is_a_context() {
         let mut context = drafts([[3.0, 3.0], [4.0, 4.0]]);
-        leave_out_moving_environment(&mut context);
+        leave_out_moving_environment(&mut context, &[]);
         assert_eq!((context.channels.len(), context.findings.len()), (2, 0));
         for moving_or_same in [[[3.0, 3.5], [4.0, 4.0]], [[3.0, 3.0], [3.0, 3.0]]] {
             let mut other = drafts(moving_or_same);
-            leave_out_moving_environment(&mut other);
+            leave_out_moving_environment(&mut other, &[]);
             assert_eq!((other.channels.len(), other.findings.len()), (1, 1));
             assert_eq!(other.episodes[0].positions, [1.0, 2.0]);
             assert_eq!(other.episodes[1].velocities, [10.0, 10.0]);
         }
+        // In one of several pieces the others tell.
+        let mut same = drafts([[3.0, 3.0], [3.0, 3.0]]);
+        let names = same.names();
+        leave_out_moving_environment(&mut same, &names);
+        assert_eq!((same.channels.len(), same.findings.len()), (2, 0));
+        leave_out_moving_environment(&mut context, &["x".to_owned()]);
+        assert_eq!(context.channels.len(), 1);
     }
 }

@@ -13,8 +13,8 @@ use serde::{Deserialize, Serialize};
 pub struct FileState {
     /// Its size.
     pub bytes: u64,
-    /// When it was written to.
-    pub modified: SystemTime,
+    /// When it was written to, in nanoseconds since 1970.
+    pub modified: i64,
 }
 
 impl FileState {
@@ -24,7 +24,11 @@ impl FileState {
     /// What the system says, and what is not a plain file.
     pub fn of(path: &Path) -> io::Result<FileState> {
         let found = plain(path)?;
-        Ok(FileState { bytes: found.len(), modified: found.modified()? })
+        let modified = match found.modified()?.duration_since(SystemTime::UNIX_EPOCH) {
+            Ok(since) => since.as_nanos() as i64,
+            Err(before) => -(before.duration().as_nanos() as i64),
+        };
+        Ok(FileState { bytes: found.len(), modified })
     }
 }
 

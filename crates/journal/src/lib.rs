@@ -1,7 +1,7 @@
 //! Finished work, kept in a file as it is finished, so that a program that was interrupted or killed goes on.
 //!
-//! The first line says what kind of journal it is. Every other line is one record: the SHA-256 of its text, and JSON. A torn or
-//! changed line is counted and passed over; it costs that record alone.
+//! The first line says what kind of journal it is. Every other line is one record: the SHA-256 of its text, a blank, and JSON. A torn
+//! or changed line is counted and passed over; it costs that record alone.
 
 mod line;
 
@@ -11,9 +11,9 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use serde::Serialize;
-use serde::de::DeserializeOwned;
+use serde::de::{DeserializeOwned, IgnoredAny};
 
-/// A journal that is open for appending. No other process can open it meanwhile.
+/// A journal that is open for appending. No other process can open it meanwhile, where the file system has locks.
 #[derive(Debug)]
 pub struct Journal {
     path: PathBuf,
@@ -40,16 +40,19 @@ impl Journal {
         if fs::symlink_metadata(path).is_ok_and(|found| !found.is_file()) {
             return Err(of_another_kind());
         }
-        let mut file = OpenOptions::new().read(true).append(true).create(true).open(path)?;
-        file.try_lock().map_err(|error| match error {
-            fs::TryLockError::WouldBlock => io::Error::new(ErrorKind::WouldBlock, "another process is writing it"),
-            fs::TryLockError::Error(error) => error,
-        })?;
+        // Not in the mode for appending, in which Windows cannot shorten a file.
+        let mut file = OpenOptions::new().read(true).write(true).create(true).truncate(false).open(path)?;
+        if let Err(fs::TryLockError::WouldBlock) = file.try_lock() {
+            return Err(in_use());
+        }
+        if !is_at(path, &file) {
+            // It was removed or replaced between opening and locking.
+            return Err(in_use());
+        }
         let contents = records(&file, kind)?;
         // Also of one that was interrupted at once, which has a part of the first line.
         if file.metadata()?.len() <= kind.len() as u64 {
-            file.set_len(0)?;
-            writeln!(file, "{kind}")?;
+            begin(&mut file, kind)?;
         } else {
             file.seek(SeekFrom::End(-1))?;
             let mut last = [0];
@@ -62,13 +65,18 @@ impl Journal {
         Ok((Journal { path, kind, file: Mutex::new(file) }, contents))
     }
 
-    /// Writes a record to the file at once.
+    /// Hands a record to the system at once, whole or not at all.
     ///
     /// # Errors
-    /// What the system says, and a record that is not JSON.
+    /// [`ErrorKind::InvalidData`] of a record that is not JSON, and what the system says.
     pub fn append(&self, record: &impl Serialize) -> io::Result<()> {
         let line = line::of(record)?;
-        self.writing().write_all(&line)
+        let mut file = self.writing();
+        let end = file.seek(SeekFrom::End(0))?;
+        file.write_all(&line).inspect_err(|_| {
+            // Else the next line would be torn, too.
+            let _ = file.set_len(end);
+        })
     }
 
     /// Forgets all records.
@@ -76,9 +84,7 @@ impl Journal {
     /// # Errors
     /// What the system says.
     pub fn clear(&self) -> io::Result<()> {
-        let mut file = self.writing();
-        file.set_len(0)?;
-        writeln!(file, "{}", self.kind)
+        begin(&mut self.writing(), &self.kind)
     }
 
     /// Holds back every write while the guard lives, so that the process may end without tearing a line.
@@ -92,7 +98,14 @@ impl Journal {
     }
 }
 
-/// What a journal of this `kind` holds, which may be open elsewhere.
+impl Drop for Journal {
+    /// Closing would not do: a process that was forked meanwhile has the file open, too.
+    fn drop(&mut self) {
+        let _ = self.writing().unlock();
+    }
+}
+
+/// What a journal of this `kind` holds, which may be open elsewhere, but not on Windows.
 ///
 /// # Errors
 /// [`ErrorKind::AlreadyExists`] if it is of another kind, and what the system says.
@@ -102,10 +115,33 @@ pub fn read<T: DeserializeOwned>(path: &Path, kind: &str) -> io::Result<Contents
 
 /// Removes a journal of this `kind` that no process has open; what is none stays.
 pub fn remove(path: &Path, kind: &str) {
-    // Without it there is nothing to remove.
-    if path.exists() && Journal::open::<serde::de::IgnoredAny>(path, kind).is_ok() {
-        let _ = fs::remove_file(path);
+    if path.exists()
+        && let Ok((journal, _)) = Journal::open::<IgnoredAny>(path, kind)
+    {
+        // While it is locked, and nobody else begins to write. If it cannot be removed, it is taken up again or begun anew.
+        let _ = fs::remove_file(journal.path());
     }
+}
+
+fn begin(file: &mut File, kind: &str) -> io::Result<()> {
+    file.set_len(0)?;
+    file.seek(SeekFrom::Start(0))?;
+    writeln!(file, "{kind}")
+}
+
+/// Whether this is what stands there, and no link to it.
+#[cfg(unix)]
+fn is_at(path: &Path, file: &File) -> bool {
+    use std::os::unix::fs::MetadataExt as _;
+    let place = |found: fs::Metadata| (found.dev(), found.ino());
+    let (there, own) = (fs::symlink_metadata(path).map(place), file.metadata().map(place));
+    matches!((there, own), (Ok(there), Ok(own)) if there == own)
+}
+
+/// What is open cannot be replaced.
+#[cfg(not(unix))]
+fn is_at(_path: &Path, _file: &File) -> bool {
+    true
 }
 
 fn records<T: DeserializeOwned>(file: &File, kind: &str) -> io::Result<Contents<T>> {
@@ -126,6 +162,10 @@ fn records<T: DeserializeOwned>(file: &File, kind: &str) -> io::Result<Contents<
         }
     }
     Ok(contents)
+}
+
+fn in_use() -> io::Error {
+    io::Error::new(ErrorKind::WouldBlock, "another process is writing it")
 }
 
 fn of_another_kind() -> io::Error {
@@ -213,6 +253,41 @@ mod tests {
         assert_eq!(read::<f64>(&other, KIND).expect_err("refused").kind(), ErrorKind::AlreadyExists);
         remove(&path, KIND);
         assert!(!path.exists());
+    }
+
+    #[test]
+    fn what_is_no_json_costs_only_itself() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let (journal, _) = open(&folder.path().join("a.journal"));
+        journal.append(&1.0).expect("a line");
+        let refused = journal.append(&Unwritable).expect_err("no JSON");
+        assert_eq!(refused.kind(), ErrorKind::InvalidData);
+        journal.append(&2.0).expect("a line");
+        let path = journal.path().to_owned();
+        drop(journal);
+        assert_eq!(open(&path).1, Contents { records: vec![1.0, 2.0], damaged: 0 });
+    }
+
+    struct Unwritable;
+
+    impl Serialize for Unwritable {
+        fn serialize<S: serde::Serializer>(&self, _: S) -> Result<S::Ok, S::Error> {
+            Err(serde::ser::Error::custom("no"))
+        }
+    }
+
+    /// As a pool of processes does that is made while a journal is open.
+    #[cfg(unix)]
+    #[test]
+    fn what_another_process_inherited_is_unlocked() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("a.journal");
+        let (journal, _) = open(&path);
+        let inherited = journal.writing().try_clone().expect("a descriptor");
+        drop(journal);
+        remove(&path, KIND);
+        assert!(!path.exists());
+        drop(inherited);
     }
 
     #[cfg(unix)]

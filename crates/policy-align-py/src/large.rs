@@ -35,12 +35,14 @@ pub(crate) fn divide(
     let hint = "at_once=\"2GB\" or \"all\"";
     let bytes = Division::bytes(at_once)
         .ok_or_else(|| Refusal::new(format!("'{at_once}' is no size of files"), "at_once", hint))?;
-    let division = interruptible(py, move |_: &_| Division::of(&paths, &reading, bytes, &mut |_bytes| ()))?;
-    let division = division.map_err(|error| Refusal::read(&error))?;
-    if let (false, Some(flag)) = (division.further.is_empty(), options.needs_whole_recordings()) {
+    if let Some(flag) = options.needs_whole_recordings()
+        && !Division::fits(&paths, bytes).map_err(|error| Refusal::read(&error))?
+    {
         let what = format!("{} needs all files at once", in_python(flag));
         return Err(Refusal::new(what, "at_once", "at_once=\"all\"").into());
     }
+    let division = interruptible(py, move |_: &_| Division::of(&paths, &reading, bytes, &mut |_bytes| ()))?;
+    let division = division.map_err(|error| Refusal::read(&error))?;
     Ok((division.at_once.into_iter().map(given).collect(), division.further.into_iter().map(tuple).collect()))
 }
 

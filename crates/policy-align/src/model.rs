@@ -47,9 +47,9 @@ pub(crate) fn nowhere() -> DVector<f64> {
 /// per second.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PredictedSpeed {
-    /// Where it was seen.
+    /// Where it was seen; of a mean of samples the first of them.
     pub index: SampleIndex,
-    /// As it was recorded.
+    /// As it was learnt from.
     pub seen: f64,
     /// As it is predicted.
     pub predicted: f64,

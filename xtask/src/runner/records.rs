@@ -67,7 +67,8 @@ impl Records {
         let (journal, found) = Journal::open(path, KIND).map_err(|error| {
             let remedy = match error.kind() {
                 ErrorKind::WouldBlock => "wait for the other run, or choose another --out",
-                _ => "delete it if an older version wrote it, or choose another --out",
+                ErrorKind::AlreadyExists => "delete it if an older version wrote it, or choose another --out",
+                _ => "choose an --out that can be written to",
             };
             Failure::new(format!("the records cannot be opened: {error}"), path.display().to_string(), remedy)
         })?;
@@ -82,7 +83,7 @@ impl Records {
     /// Adds what another file holds, which stays as it is.
     pub(crate) fn add(&mut self, path: &Path) -> anyhow::Result<()> {
         let found = journal::read(path, KIND).map_err(|error| {
-            let remedy = "--merge with the folder of each shard";
+            let remedy = "--merge with the folder of each shard, made by this version";
             Failure::new(format!("the records of a shard cannot be read: {error}"), path.display().to_string(), remedy)
         })?;
         self.take(found);

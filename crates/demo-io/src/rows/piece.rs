@@ -67,7 +67,7 @@ impl Span {
         if FileState::of(path).is_ok_and(|now| now == self.of) {
             return Ok(());
         }
-        let remedy = "the same command again, once nothing writes to the file";
+        let remedy = "the same command again, once nothing writes to the file, with the same file for all workers";
         Err(ReadError::Corrupt(Fault::new("the file has changed while it was read", name_of(path), remedy)))
     }
 }

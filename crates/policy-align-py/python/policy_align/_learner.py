@@ -120,7 +120,7 @@ class Learner(Estimator):
         Files of ``at_once``, evenly spread, are read together; every other file is read alone, and means of its samples stay. A text that
         is large counts as pieces of whole movements. ``map`` does that, as the builtin function: that of a pool of processes, or of an
         engine (``policy_align.dask.fit``), gives the same model. What it is given can be pickled. With a file ``unfinished``, which is made
-        and in the end removed, a call that was interrupted goes on when it is made again. ``options`` as of ``Demonstrations.read``; the
+        and in the end removed, a call that was interrupted goes on when it is made again: what ``map`` had yielded is kept. ``options`` as of ``Demonstrations.read``; the
         program's ``fit --at-once`` does the same.
         """
         threads = _threads(self.n_jobs)

@@ -31,9 +31,11 @@ def fit(
     ``options`` as of ``Learner.fit_files``, such as ``unfinished``.
     """
 
+    from distributed import as_completed
+
     def on_workers(function: Callable[[Further], bytes], items: list[Further]) -> Iterator[bytes]:
-        for future in client.map(function, items):  # all at once; what is done is kept as it comes
-            yield client.gather(future)
+        for future in as_completed(client.map(function, items)):
+            yield future.result()
 
     learner = AutoGp() if learner is None else learner
     return learner.fit_files(*files, at_once=at_once, map=on_workers, **options)

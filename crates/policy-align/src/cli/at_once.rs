@@ -2,6 +2,7 @@
 //! parts.
 
 use std::collections::HashSet;
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use demo_io::Piece;
@@ -34,17 +35,16 @@ pub(crate) fn division(
     let most = flags.at_once.as_deref().map(size).transpose()?;
     let whole = if flags.hold_out.is_empty() { options.needs_whole_recordings() } else { Some("--hold-out") };
     let most = most.unwrap_or(if whole.is_some() { u64::MAX } else { Division::AT_ONCE });
+    if let Some(flag) = whole
+        && !Division::fits(files, most)?
+    {
+        let what = format!("{flag} needs all files at once");
+        return Err(Failure::usage(what, "--at-once", format!("no {flag}, or --at-once {}", Division::ALL)));
+    }
     let bar = session.bar(0, "looking for movements  {bytes}, {elapsed} elapsed");
     let division = Division::of(files, &reading.options()?, most, &mut |read| bar.inc(read));
     bar.finish_and_clear();
-    let division = division?;
-    match whole {
-        Some(flag) if !division.further.is_empty() => {
-            let what = format!("{flag} needs all files at once");
-            Err(Failure::usage(what, "--at-once", format!("no {flag}, or --at-once {}", Division::ALL)))
-        }
-        _ => Ok(division),
-    }
+    Ok(division?)
 }
 
 /// The I-th of N shares.
@@ -75,7 +75,13 @@ pub(crate) fn digests(
 /// Where digests are kept until `output` is written.
 pub(crate) fn unfinished(output: &Path, pieces: &[FurtherPiece], digester: &Digester) -> Result<Unfinished, Failure> {
     let path = Unfinished::beside(output);
-    Unfinished::open(&path, pieces, digester).map_err(|error| Failure::writing(&path, error))
+    Unfinished::open(&path, pieces, digester).map_err(|error| match error.kind() {
+        ErrorKind::WouldBlock | ErrorKind::AlreadyExists => {
+            let remedy = "-o with another name, or that file elsewhere, if no other fit is running";
+            Failure::new(Exit::File, format!("digests cannot be kept: {error}"), displayed(&path), remedy)
+        }
+        _ => Failure::writing(&path, error),
+    })
 }
 
 fn read(path: &Path) -> Result<Part, Failure> {
@@ -102,7 +108,10 @@ fn part(
     part.map_err(|error| match error {
         PartError::Read(error) => Failure::from(error),
         error => {
-            let remedy = format!("--at-once {} or a larger size, or leave out this file", Division::ALL);
+            let all = Division::ALL;
+            let remedy = format!(
+                "--at-once {all} or a larger size, --state or --ignore if its channels differ, or no such file"
+            );
             Failure::of_text(Exit::Refused, &error.to_string(), "files that are not read at once", &remedy)
         }
     })

@@ -63,8 +63,8 @@ impl Digest {
         for digest in digests {
             let names = digest.channels.iter().map(|channel| &channel.name);
             if !digest.is_sound(dim) || !names.eq(channels.iter().map(|channel| &channel.name)) {
-                let file = digest.data.files.first().map_or("of a folder or a piece", |file| &file.name);
-                return Err(FitError::Digest { reason: format!("the digest {file} is damaged") });
+                let file = digest.data.files.first().map_or("a folder or a piece of a file", |file| &file.name);
+                return Err(FitError::Digest { reason: format!("the digest of {file} is damaged") });
             }
             let factors = channels.iter().zip(&digest.channels).map(|(now, then)| now.scale / then.scale);
             let factors: Vec<f64> = factors.collect();

@@ -59,6 +59,14 @@ impl Division {
         self.further.iter().skip(this.saturating_sub(1)).step_by(of.max(1)).cloned().collect()
     }
 
+    /// Whether files have at most so many bytes together.
+    ///
+    /// # Errors
+    /// [`ReadError`] for a folder that cannot be read.
+    pub fn fits(files: &[PathBuf], most_bytes: u64) -> Result<bool, ReadError> {
+        Ok(listed(files)?.iter().map(|path| bytes_in(path)).sum::<u64>() <= most_bytes)
+    }
+
     /// All files at once.
     pub fn none(files: &[PathBuf]) -> Division {
         let whole = |path| Piece::whole(path, files.len() > 1);
@@ -78,10 +86,10 @@ impl Division {
         most_bytes: u64,
         progress: &mut dyn FnMut(u64),
     ) -> Result<Division, ReadError> {
-        let listed = files.iter().map(|path| demo_io::files_of(path)).collect::<Result<Vec<_>, _>>()?.concat();
-        if listed.iter().map(|path| bytes_in(path)).sum::<u64>() <= most_bytes {
+        if Self::fits(files, most_bytes)? {
             return Ok(Division::none(files));
         }
+        let listed = listed(files)?;
         let named_by_file = listed.len() > 1 || listed != files;
         let most_of_one = (most_bytes / PIECES).max(SMALLEST);
         let mut pieces = vec![];
@@ -105,6 +113,11 @@ impl Division {
         }
         Ok(division)
     }
+}
+
+/// These files, and those of folders that hold one for each movement.
+fn listed(files: &[PathBuf]) -> Result<Vec<PathBuf>, ReadError> {
+    Ok(files.iter().map(|path| demo_io::files_of(path)).collect::<Result<Vec<_>, _>>()?.concat())
 }
 
 /// Of a file, a piece of one, or all files in a folder.

@@ -34,7 +34,7 @@ pub struct Unfinished {
 struct Source {
     path: PathBuf,
     state: FileState,
-    part: Option<Range<u64>>,
+    span: Option<Range<u64>>,
     rows: usize,
 }
 
@@ -50,8 +50,8 @@ impl Source {
     /// None for a folder, or if the system does not tell.
     fn of(FurtherPiece { piece, rows, .. }: &FurtherPiece) -> Option<Source> {
         let (state, path) = (FileState::of(&piece.path).ok()?, fs::canonicalize(&piece.path).ok()?);
-        let part = piece.span.as_ref().map(|span| span.bytes.clone());
-        Some(Source { path, state, part, rows: *rows })
+        let span = piece.span.as_ref().map(|span| span.bytes.clone());
+        Some(Source { path, state, span, rows: *rows })
     }
 }
 
@@ -112,9 +112,14 @@ impl Unfinished {
 
     /// Keeps a digest; of a folder none is kept.
     pub(super) fn keep(&self, digest: &PieceDigest) {
+        let is_full = |journal: &mut Journal, source: &Source| {
+            let failed = journal.append(&Record { source, of: digest }).err();
+            // A path that is no text is not kept.
+            failed.is_some_and(|error| error.kind() != io::ErrorKind::InvalidData)
+        };
         if let Some(source) = self.sources.get(&digest.at)
             && let Ok(mut journal) = self.journal.lock()
-            && let Some(full) = journal.take_if(|journal| journal.append(&Record { source, of: digest }).is_err())
+            && let Some(full) = journal.take_if(|journal| is_full(journal, source))
         {
             // The model needs the room.
             let _ = fs::remove_file(full.path());

@@ -54,7 +54,7 @@ pub(crate) fn left_out_part(model: &Model, prepared: &Prepared) -> Option<Part> 
     };
     let body = html! {
         p {
-            "Blue: the speed of three movements along their own direction, as recorded. Orange and dashed: what " (which) " predicts \
+            "Blue: the speed of three movements along their own direction, as learnt from. Orange and dashed: what " (which) " predicts \
              there if it learns from all other movements, with the same parameters. Where both agree, the movement shows nothing that the \
              others do not."
         }
@@ -63,7 +63,7 @@ pub(crate) fn left_out_part(model: &Model, prepared: &Prepared) -> Option<Part> 
     Some(part("left-out", TITLE, &body))
 }
 
-/// Speed along a movement over time, seen and predicted, in units of the recording.
+/// Speed along a movement over time, seen and predicted, in units of the model.
 fn curves(model: &Model, movement: &Trajectory, rows: &[&PredictedSpeed], title: &str) -> Curves {
     let every = rows.len().div_ceil(DRAWN).max(1);
     let point = |row: &&PredictedSpeed| (movement.seconds(0, row.index.sample), row.seen, row.predicted);
