@@ -121,7 +121,7 @@ impl Unfinished {
     fn found<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyBytes>, Vec<Further>)> {
         let kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
         let Some(kept) = &*kept else { return Err(damaged("closed already").into()) };
-        let (part, others) = kept.take_all(&self.pieces);
+        let (part, others) = Part::kept(kept, &self.pieces);
         let bytes = part.to_json().map_err(|error| damaged(&error.to_string()))?;
         Ok((PyBytes::new(py, &bytes), others.into_iter().map(tuple).collect()))
     }
@@ -130,7 +130,7 @@ impl Unfinished {
     fn keep(&self, part: &[u8]) -> PyResult<()> {
         let part = Part::of_json(part).map_err(|error| damaged(&error.to_string()))?;
         if let Some(kept) = &*self.kept.lock().unwrap_or_else(PoisonError::into_inner) {
-            kept.keep_all(&part);
+            part.keep_in(kept);
         }
         Ok(())
     }

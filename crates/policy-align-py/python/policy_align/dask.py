@@ -31,7 +31,9 @@ def fit(
     ``options`` as of ``Learner.fit_files``, such as ``unfinished``.
     """
 
-    from distributed import as_completed
+    import distributed
+
+    as_completed: Any = distributed.as_completed
 
     def on_workers(function: Callable[[Further], bytes], items: list[Further]) -> Iterator[bytes]:
         for future in as_completed(client.map(function, items)):

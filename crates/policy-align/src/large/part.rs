@@ -51,8 +51,21 @@ impl Part {
         Ok(Part::from(pieces.par_iter().map(digest).collect::<Result<Vec<_>, PartError>>()?))
     }
 
-    pub(super) fn digests(&self) -> &[PieceDigest] {
-        &self.digests
+    /// Takes all digests of an earlier run, and says which of these pieces they are not of.
+    pub fn kept(unfinished: &Unfinished, pieces: &[FurtherPiece]) -> (Part, Vec<FurtherPiece>) {
+        let (mut found, mut others) = (Vec::new(), Vec::new());
+        for piece in pieces {
+            match unfinished.take(piece) {
+                Some(digest) => found.push(digest),
+                None => others.push(piece.clone()),
+            }
+        }
+        (Part::from(found), others)
+    }
+
+    /// Keeps all its digests.
+    pub fn keep_in(&self, unfinished: &Unfinished) {
+        self.digests.iter().for_each(|digest| unfinished.keep(digest));
     }
 
     /// As a file.

@@ -11,7 +11,7 @@ use journal::Journal;
 use serde::{Deserialize, Serialize};
 
 use crate::large::piece_digest::PieceDigest;
-use crate::large::{Digester, FurtherPiece, Part};
+use crate::large::{Digester, FurtherPiece};
 
 /// The first line of the file.
 const KIND: &str = "policy-align unfinished 1";
@@ -91,23 +91,6 @@ impl Unfinished {
     /// The digest of an earlier run.
     pub(super) fn take(&self, piece: &FurtherPiece) -> Option<PieceDigest> {
         self.found.lock().ok()?.remove(&piece.at)
-    }
-
-    /// Takes all digests of an earlier run, and says which of these pieces they are not of.
-    pub fn take_all(&self, pieces: &[FurtherPiece]) -> (Part, Vec<FurtherPiece>) {
-        let (mut found, mut others) = (Vec::new(), Vec::new());
-        for piece in pieces {
-            match self.take(piece) {
-                Some(digest) => found.push(digest),
-                None => others.push(piece.clone()),
-            }
-        }
-        (Part::from(found), others)
-    }
-
-    /// Keeps all digests of a part.
-    pub fn keep_all(&self, part: &Part) {
-        part.digests().iter().for_each(|digest| self.keep(digest));
     }
 
     /// Keeps a digest; of a folder none is kept.
