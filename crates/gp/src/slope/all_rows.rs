@@ -20,6 +20,8 @@ const EXACT: usize = 1500;
 const HYPER: usize = 400;
 /// Left-out error of a model of more noisy rows, in errors of one of fewer, up to which it is taken.
 const ALLOWED: f64 = 1.05;
+/// Left-out error of a model of some rows through inducing ones, in errors of an exact one, up to which it is taken.
+const CLEARLY: f64 = 0.7;
 /// Multiple of the least error so far above which the other kind of model is not tried through inducing rows.
 const HOPELESS: f64 = 2.0;
 /// Rows, for each inducing one, on which families are compared where there are several times as many, and beyond which they are thinned.
@@ -62,11 +64,11 @@ pub(crate) fn on_all_rows(gp: &SlopeGp, rows: &Rows, kept: &Kept, thinned: &Outc
     let before = exact.as_ref().map_or(thinned, |exact| &exact.outcome);
     let (some, all) = if beyond == 0 { (None, None) } else { all_induced(gp, of_most, before, worth) };
     // Of noisy rows too few are kept to tell nearly equal models apart: the one of more rows knows more.
-    let noisy = kept.variances.is_some();
-    let allowed = if noisy { ALLOWED } else { 1.0 };
-    let good = |induced: &OnAllRows| error(induced) <= allowed * least;
-    let induced = if noisy { all.filter(good).or(some.filter(good)) } else { best_of(vec![some, all]).filter(good) };
-    induced.or_else(|| exact.filter(|exact| error(exact) <= allowed * thinned_error))
+    let allowed = if kept.variances.is_some() { ALLOWED } else { 1.0 };
+    let all = all.filter(|all| error(all) <= allowed * least);
+    // More rows than an exact model has, but seen through fewer: it knows more only if it predicts clearly better.
+    let some = some.filter(|some| error(some) <= CLEARLY * least);
+    all.or(some).or_else(|| exact.filter(|exact| error(exact) <= allowed * thinned_error))
 }
 
 /// Models through inducing rows: of some rows where there are several times as many, with the families that were nearly the best before,
