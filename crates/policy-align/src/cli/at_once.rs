@@ -12,6 +12,7 @@ use text::quoted;
 
 use crate::cli::failure::{Exit, Failure, displayed};
 use crate::cli::given::again;
+use crate::cli::interrupt::last_words;
 use crate::cli::lines::{Lines, counted, size};
 use crate::cli::options::flags::{FitFlags, ReadFlags};
 use crate::cli::recorded::{base_name, summaries};
@@ -103,7 +104,11 @@ fn part(
     let bytes = pieces.iter().map(|piece| piece.bytes).sum();
     let template = format!("further {}s  {{bar:30}} {{bytes}} of {{total_bytes}}, {{eta}} left", word(pieces));
     let bar = session.bar(bytes, &template);
+    let kept =
+        unfinished.map(|_| format!("stopped: every {} that was read is kept; the same command goes on", word(pieces)));
+    last_words(kept.filter(|_| !session.quiet));
     let part = Part::of(pieces, digester, unfinished, &|read| bar.inc(read));
+    last_words(None);
     bar.finish_and_clear();
     part.map_err(|error| match error {
         PartError::Read(error) => Failure::from(error),

@@ -1,10 +1,15 @@
 //! Ctrl-C, and what ends a program otherwise.
 
 use std::process::exit;
+use std::sync::Mutex;
 #[cfg(feature = "ros2")]
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::cli::failure::Exit;
+use crate::cli::session::complain;
+
+/// What is said before an interrupt ends the program.
+static LAST_WORDS: Mutex<Option<String>> = Mutex::new(None);
 
 /// Whether a command ends by itself when it is interrupted, and whether it was.
 #[cfg(feature = "ros2")]
@@ -20,7 +25,17 @@ pub(crate) fn interrupt() {
         return;
     }
     demo_io::abandon_drafts();
+    if let Ok(Some(words)) = LAST_WORDS.lock().as_deref() {
+        complain(&format!("\n{words}"));
+    }
     exit(Exit::Interrupted as i32)
+}
+
+/// Says this if an interrupt ends the program; none says nothing.
+pub(crate) fn last_words(words: Option<String>) {
+    if let Ok(mut last) = LAST_WORDS.lock() {
+        *last = words;
+    }
 }
 
 /// From now on an interrupt does not end the program: the command looks for it.
