@@ -441,3 +441,31 @@ fn pieces_say_what_the_files_say() {
     assert!(whole.code == Some(0) && !whole.out.contains("at once"), "{}{}", whole.out, whole.err);
     assert!(whole.out.contains("210 episodes, 21000 samples"), "{}", whole.out);
 }
+
+/// Ctrl-C while digests are made, in several attempts, since a fast machine may be done before the signal comes.
+#[cfg(target_os = "linux")]
+#[test]
+fn an_interrupt_says_that_the_same_command_goes_on() {
+    use std::process::{Command, Stdio};
+    let folder = large("large.csv");
+    let (path, kept) = (folder.path(), folder.path().join("m.json.unfinished"));
+    // Whatever started the tests may have the signal ignored, which a program inherits: `env` undoes it.
+    let interrupted = || {
+        let fit = command(path);
+        let mut env = Command::new("env");
+        let arguments = "fit large.csv --learner slope --max-rows 60 --inducing 0 --at-once 600kB -o m.json";
+        env.current_dir(path).arg("--default-signal=INT").arg(fit.get_program()).args(arguments.split_whitespace());
+        let mut child = env.env("RAYON_NUM_THREADS", "1").stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
+        let lines = || std::fs::read_to_string(&kept).map_or(0, |text| text.lines().count());
+        while lines() < 2 && child.try_wait().unwrap().is_none() {
+            std::thread::sleep(std::time::Duration::from_millis(1));
+        }
+        // It may have ended.
+        let _ = Command::new("kill").args(["-INT", &child.id().to_string()]).stderr(Stdio::null()).status();
+        let ran: Ran = child.wait_with_output().unwrap().into();
+        ran.err.contains("every piece that was read is kept; the same command goes on").then_some(ran.code)
+    };
+    assert_eq!((0..10).find_map(|_| interrupted()), Some(Some(130)));
+    let went_on = run_in(path, "fit large.csv --learner slope --max-rows 60 --inducing 0 --at-once 600kB -o m.json");
+    assert!(went_on.code == Some(0) && went_on.err.contains("goes on"), "{}", went_on.err);
+}
