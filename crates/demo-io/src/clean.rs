@@ -105,9 +105,6 @@ fn leave_out_moving_environment(drafts: &mut RawRecordings, channels: &[String])
     if stays.iter().all(|&stays| stays) {
         return;
     }
-    if channels.iter().any(|name| name.starts_with(ENVIRONMENT)) {
-        return;
-    }
     let part = |sample: &[f64]| -> Vec<f64> {
         sample.iter().zip(&stays).filter(|(_, stays)| !**stays).map(|(value, _)| *value).collect()
     };
@@ -119,7 +116,12 @@ fn leave_out_moving_environment(drafts: &mut RawRecordings, channels: &[String])
         let first = samples.next();
         samples.any(|sample| Some(&sample) != first.as_ref())
     };
-    if channels.is_empty() && differs && !drafts.episodes.iter().any(moves) {
+    let is_context = if channels.is_empty() {
+        differs && !drafts.episodes.iter().any(moves)
+    } else {
+        channels.iter().any(|name| name.starts_with(ENVIRONMENT))
+    };
+    if is_context {
         return;
     }
     let names: Vec<&str> =

@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use serde::Serialize;
-use serde::de::{DeserializeOwned, IgnoredAny};
+use serde::de::DeserializeOwned;
 
 /// A journal that is open for appending. No other process can open it meanwhile, where the file system has locks.
 #[derive(Debug)]
@@ -37,19 +37,8 @@ impl Journal {
     /// [`ErrorKind::WouldBlock`] if another process has it open, [`ErrorKind::AlreadyExists`] for a link, a folder or a file that is no
     /// journal of this kind, which stays as it is, and what the system says.
     pub fn open<T: DeserializeOwned>(path: &Path, kind: &str) -> io::Result<(Journal, Contents<T>)> {
-        if fs::symlink_metadata(path).is_ok_and(|found| !found.is_file()) {
-            return Err(of_another_kind());
-        }
-        // Not in the mode for appending, in which Windows cannot shorten a file.
-        let mut file = OpenOptions::new().read(true).write(true).create(true).truncate(false).open(path)?;
-        if let Err(fs::TryLockError::WouldBlock) = file.try_lock() {
-            return Err(in_use());
-        }
-        if !is_at(path, &file) {
-            // It was removed or replaced between opening and locking.
-            return Err(in_use());
-        }
-        let contents = records(&file, kind)?;
+        let mut file = locked(path, kind)?;
+        let contents = records(&file)?;
         // Also of one that was interrupted at once, which has a part of the first line.
         if file.metadata()?.len() <= kind.len() as u64 {
             begin(&mut file, kind)?;
@@ -110,17 +99,38 @@ impl Drop for Journal {
 /// # Errors
 /// [`ErrorKind::AlreadyExists`] if it is of another kind, and what the system says.
 pub fn read<T: DeserializeOwned>(path: &Path, kind: &str) -> io::Result<Contents<T>> {
-    records(&File::open(path)?, kind)
+    let mut file = File::open(path)?;
+    require_kind(&mut file, kind)?;
+    records(&file)
 }
 
 /// Removes a journal of this `kind` that no process has open; what is none stays.
 pub fn remove(path: &Path, kind: &str) {
+    // While it is locked, nobody else begins to write. If it cannot be removed, it is taken up again or begun anew.
     if path.exists()
-        && let Ok((journal, _)) = Journal::open::<IgnoredAny>(path, kind)
+        && let Ok(file) = locked(path, kind)
     {
-        // While it is locked, and nobody else begins to write. If it cannot be removed, it is taken up again or begun anew.
-        let _ = fs::remove_file(journal.path());
+        let _ = fs::remove_file(path);
+        let _ = file.unlock();
     }
+}
+
+/// A file of this `kind`, or a new one, that no other process has open.
+fn locked(path: &Path, kind: &str) -> io::Result<File> {
+    if fs::symlink_metadata(path).is_ok_and(|found| !found.is_file()) {
+        return Err(of_another_kind());
+    }
+    // Not in the mode for appending, in which Windows cannot shorten a file.
+    let mut file = OpenOptions::new().read(true).write(true).create(true).truncate(false).open(path)?;
+    if let Err(fs::TryLockError::WouldBlock) = file.try_lock() {
+        return Err(in_use());
+    }
+    if !is_at(path, &file) {
+        // It was removed or replaced between opening and locking.
+        return Err(in_use());
+    }
+    require_kind(&mut file, kind)?;
+    Ok(file)
 }
 
 fn begin(file: &mut File, kind: &str) -> io::Result<()> {
@@ -144,14 +154,16 @@ fn is_at(_path: &Path, _file: &File) -> bool {
     true
 }
 
-fn records<T: DeserializeOwned>(file: &File, kind: &str) -> io::Result<Contents<T>> {
-    let mut reader = BufReader::new(file);
+/// Reads the first line, of which one that was interrupted at once has a part.
+fn require_kind(file: &mut File, kind: &str) -> io::Result<()> {
     let mut first = Vec::new();
-    reader.by_ref().take(kind.len() as u64 + 1).read_until(b'\n', &mut first)?;
-    let whole = [kind.as_bytes(), b"\n"].concat();
-    if !whole.starts_with(&first) {
-        return Err(of_another_kind());
-    }
+    file.take(kind.len() as u64 + 1).read_to_end(&mut first)?;
+    if format!("{kind}\n").as_bytes().starts_with(&first) { Ok(()) } else { Err(of_another_kind()) }
+}
+
+/// All lines from here on.
+fn records<T: DeserializeOwned>(file: &File) -> io::Result<Contents<T>> {
+    let reader = BufReader::new(file);
     let mut contents = Contents { records: Vec::new(), damaged: 0 };
     for line in reader.split(b'\n') {
         let line = line?;

@@ -62,6 +62,11 @@ impl AsRef<Path> for Piece {
 }
 
 impl Span {
+    /// How many bytes it has.
+    pub fn size(&self) -> u64 {
+        self.bytes.end.saturating_sub(self.bytes.start)
+    }
+
     /// Refuses a file that is no longer as it was when it was cut.
     pub(crate) fn require_unchanged(&self, path: &Path) -> Result<(), ReadError> {
         if FileState::of(path).is_ok_and(|now| now == self.of) {

@@ -106,7 +106,7 @@ pub(crate) fn known_episode<S: AsRef<str>>(
 /// Of a piece, or of a file; what cannot be read has none.
 fn bytes_of(Piece { path, span, .. }: &Piece) -> u64 {
     let whole = || std::fs::metadata(path).map_or(0, |found| found.len());
-    span.as_ref().map_or_else(whole, |span| span.bytes.end.saturating_sub(span.bytes.start))
+    span.as_ref().map_or_else(whole, demo_io::Span::size)
 }
 
 fn warn(session: &Session, findings: &[Finding]) {

@@ -64,7 +64,7 @@ impl Division {
     /// # Errors
     /// [`ReadError`] for a folder that cannot be read.
     pub fn fits(files: &[PathBuf], most_bytes: u64) -> Result<bool, ReadError> {
-        Ok(listed(files)?.iter().map(|path| bytes_in(path)).sum::<u64>() <= most_bytes)
+        Ok(bytes_of_all(&listed(files)?) <= most_bytes)
     }
 
     /// All files at once.
@@ -86,10 +86,10 @@ impl Division {
         most_bytes: u64,
         progress: &mut dyn FnMut(u64),
     ) -> Result<Division, ReadError> {
-        if Self::fits(files, most_bytes)? {
+        let listed = listed(files)?;
+        if bytes_of_all(&listed) <= most_bytes {
             return Ok(Division::none(files));
         }
-        let listed = listed(files)?;
         let named_by_file = listed.len() > 1 || listed != files;
         let most_of_one = (most_bytes / PIECES).max(SMALLEST);
         let mut pieces = vec![];
@@ -120,9 +120,13 @@ fn listed(files: &[PathBuf]) -> Result<Vec<PathBuf>, ReadError> {
     Ok(files.iter().map(|path| demo_io::files_of(path)).collect::<Result<Vec<_>, _>>()?.concat())
 }
 
+fn bytes_of_all(files: &[PathBuf]) -> u64 {
+    files.iter().map(|path| bytes_in(path)).sum()
+}
+
 /// Of a file, a piece of one, or all files in a folder.
 fn bytes_of(piece: &Piece) -> u64 {
-    piece.span.as_ref().map_or_else(|| bytes_in(&piece.path), |span| span.bytes.end.saturating_sub(span.bytes.start))
+    piece.span.as_ref().map_or_else(|| bytes_in(&piece.path), demo_io::Span::size)
 }
 
 /// Of a file, or of all files in a folder; nothing of what cannot be read, which the reader complains of.

@@ -1,6 +1,5 @@
 use std::fs::File;
 use std::io::{BufRead as _, BufReader, Read as _, Seek as _, SeekFrom, Take};
-use std::ops::Range;
 
 use crate::input::{Input, unreadable};
 use crate::rows::json::Json;
@@ -28,9 +27,8 @@ impl Lines {
     /// Those of a part.
     pub(super) fn within(input: &Input<'_>, part: &Span) -> Result<Self, ReadError> {
         let mut lines = Self::new(input)?;
-        let Range { start, end } = part.bytes;
-        lines.file.seek(SeekFrom::Start(start)).map_err(|error| unreadable(&error, &input.name))?;
-        lines.file.get_mut().set_limit(end.saturating_sub(start));
+        lines.file.seek(SeekFrom::Start(part.bytes.start)).map_err(|error| unreadable(&error, &input.name))?;
+        lines.file.get_mut().set_limit(part.size());
         lines.line = part.line.saturating_sub(1);
         Ok(lines)
     }
