@@ -2,7 +2,7 @@
 //! `benches/peers/compare_constraints.py`.
 //!
 //! usage: constraints_file GENERATOR SET DECIBELS \[ROWS\], with GENERATOR one of cycle, cycle-task, wiping, wiping-flat; DECIBELS the ratio of signal
-//! to noise of the velocities, or `none`; ROWS those that the slope GP learns from, by default the program's 400.
+//! to noise of the velocities, or `none`; ROWS the program's --max-rows, by default 400.
 //!
 //! A list holds samples one after the other. `states`, `velocities` and, of an arm, `jacobians` (6 rows of n), `positions` and `tool_axes` are of the
 //! movements, all of them `samples` long. `test_states` and `test_actions` are true states of movements that are not learnt from, and the policy
@@ -10,10 +10,11 @@
 
 use demo_gen::tasks::{Contact, CyclesWithTask, Wiping};
 use demo_gen::{Recording, demonstrations, with_velocity_noise};
-use gp::{AutoGp, DirectGp, FrontEnd, PushTest, Rows, SlopeGp, TaskSpace};
+use gp::{FrontEnd, Rows, TaskSpace};
 use kinematics::Workspace;
 use motion::Policy;
 use nalgebra::{DMatrix, DVectorView, Matrix6xX, Vector3};
+use policy_align::FitOptions;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use serde_json::{Map, Value, json};
@@ -81,20 +82,17 @@ fn record(generator: &str, rng: &mut ChaCha8Rng) -> (Vec<Recording>, Option<Wipi
     }
 }
 
-/// What the program would learn from the velocities: slope GP or direct GP, with the noise that it estimates, and constraints that may push.
+/// What the program learns from the velocities, with the noise that it estimates.
 fn ours(name: &str, rows: &Rows, states: &DMatrix<f64>, max_rows: usize) -> Map<String, Value> {
-    let hyper_rows = max_rows / 2;
-    let learner = AutoGp {
-        slope: SlopeGp { max_rows, hyper_rows, push_test: PushTest::Fit, ..SlopeGp::default() },
-        direct: DirectGp { max_rows, hyper_rows, ..DirectGp::default() },
-        ..AutoGp::default()
-    };
+    let learner = FitOptions { max_rows, ..FitOptions::default() }.gaussian_processes();
     let fit = learner.fit(rows, &mut ChaCha8Rng::seed_from_u64(1)).expect("enough movements");
     let actions = DMatrix::from_columns(&states.column_iter().map(|state| fit.action(state)).collect::<Vec<_>>());
     let facts = json!({
         "reading": format!("{:?}", fit.reading()),
         "pushed": fit.slope().report().push,
         "space": fit.slope().report().task_space,
+        "rows": fit.slope().report().rows,
+        "inducing": fit.slope().report().inducing,
         "expected": fit.expected_nupe(),
     });
     [(name.to_owned(), list(&actions)), (format!("{name}_facts"), facts)].into_iter().collect()

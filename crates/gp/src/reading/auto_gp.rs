@@ -8,11 +8,11 @@ use crate::left_out::comparison::{difference, much_better};
 use crate::reading::Hypothesis;
 use crate::reading::numbers::{Compared, LeftOutRow, ReadingNumbers, TrajectoryErrors};
 use crate::rows::kept::Kept;
-use crate::slope::all_rows::{OnAllRows, on_all_rows};
+use crate::slope::all_rows::{More, OnAllRows, on_all_rows};
 use crate::slope::cross_path::CrossPathEvidence;
 use crate::slope::fit::SlopeFit;
 use crate::slope::judgement::{NOTHING_KNOWN, ReportInput, report};
-use crate::slope::pushed::pushed;
+use crate::slope::pushed::{Pushed, expected, pushed};
 use crate::slope::search::{Outcome, outcome};
 use crate::slope::slope_gp::SlopeGp;
 use crate::{FrontEnd, GpError, Rows};
@@ -58,36 +58,26 @@ impl AutoGp {
     pub fn fit<R: Rng + ?Sized>(&self, rows: &Rows, rng: &mut R) -> Result<AutoFit, GpError> {
         let kept = self.slope.selection()?.keep(rows, rng)?;
         let (slope, direct) = rayon::join(|| outcome(&self.slope, &kept), || self.direct.outcome(&kept));
-        let (slope, direct) = (slope?, direct?);
-        let (kept, slope, direct) = self.on_all_rows(rows, kept, slope, direct);
-        let compared = Compared {
-            speeds: &kept.speeds,
-            grouping: kept.grouping,
-            indices: &kept.indices,
-            data: &slope.data,
-            slope: (&slope.taken.left_out, &slope.taken.actions),
-            direct: (&direct.left_out, &direct.actions),
-            direct_unit: direct.fit.model.unit,
-            shares: None,
-        };
-        let (numbers, left_out) = (ReadingNumbers::compared(&compared), (compared.errors(), compared.rows()));
-        let reading = numbers.reading();
-        let pushed = if reading == Hypothesis::Free { None } else { pushed(&self.slope, rows, &kept, &slope) };
+        let few = Both { kept, slope: slope?, direct: direct? };
+        let free = few.compared(None).0.reading() == Hypothesis::Free;
+        let pushed = if free { None } else { pushed(&self.slope, rows, &few.kept, &few.slope) };
         // Where directions of stretches do not tell, nothing pushed.
-        let telling = pushed.and_then(|pushed| {
-            let actions = pushed.outcome.taken.model.actions(&kept.states);
-            let shares = pushed.shares(&kept.trajectories());
-            let slope = (&pushed.outcome.taken.left_out, &actions);
-            let compared = Compared { slope, shares: Some(&shares), ..compared };
-            let numbers = ReadingNumbers::compared(&compared);
-            let left_out = (compared.errors(), compared.rows());
-            numbers.stretches_tell().then_some((pushed, numbers, left_out))
-        });
-        let (slope, kept, numbers, left_out, reading) = match telling {
-            Some((pushed, numbers, left_out)) => {
-                (pushed.outcome, pushed.kept, numbers, left_out, Hypothesis::Constrained)
+        let telling = pushed.filter(|pushed| few.compared(Some(pushed)).0.stretches_tell());
+        let (both, pushed) = match telling.map(|pushed| pushed.on_all_rows(rows)) {
+            // Of a push, samples say nothing true, however many they are.
+            Some(pushed) if pushed.pushes() => (few, Some(pushed)),
+            pushed => {
+                let all = self.on_all_rows(rows, few);
+                let least = expected(rows, &all.slope, &all.kept);
+                (all, pushed.filter(|pushed| expected(rows, &pushed.outcome, &pushed.kept) < least))
             }
-            None => (slope, kept, numbers, left_out, reading),
+        };
+        let (numbers, left_out) = both.compared(pushed.as_ref());
+        let reading = if pushed.is_some() { Hypothesis::Constrained } else { numbers.reading() };
+        let Both { kept, slope, direct } = both;
+        let (slope, kept) = match pushed {
+            Some(Pushed { outcome, kept, .. }) => (outcome, kept),
+            None => (slope, kept),
         };
         // Left-out movements test the slope policy in all directions where it is the better one whichever way they went.
         let tested = reading == Hypothesis::Constrained || numbers.shows_a_potential();
@@ -106,19 +96,47 @@ impl AutoGp {
 
 impl AutoGp {
     /// Both models on all rows, where that pays for slopes; as they are otherwise.
-    fn on_all_rows(
-        &self,
-        rows: &Rows,
-        kept: Kept,
-        slope: Outcome,
-        direct: DirectOutcome,
-    ) -> (Kept, Outcome, DirectOutcome) {
-        let all = on_all_rows(&self.slope, rows, &kept, &slope);
-        let both = all.and_then(|all| Some((direct.on_all_rows(&all.kept, self.slope.inducing_rows)?, all)));
+    fn on_all_rows(&self, rows: &Rows, few: Both) -> Both {
+        let selection = self.slope.selection().ok();
+        let at_most = |most| selection?.keep_all(rows, &few.kept, most);
+        let more = More { at_most: &at_most, noisy: rows.variances().is_some() };
+        let all = on_all_rows(&self.slope, more, &few.kept, &few.slope);
+        let both = all.and_then(|all| Some((few.direct.on_all_rows(&all.kept, self.slope.inducing_rows)?, all)));
         match both {
-            Some((direct, OnAllRows { kept, outcome })) => (kept, outcome, direct),
-            None => (kept, slope, direct),
+            Some((direct, OnAllRows { kept, outcome })) => Both { kept, slope: outcome, direct },
+            None => few,
         }
+    }
+}
+
+/// Both models of the same rows.
+struct Both {
+    kept: Kept,
+    slope: Outcome,
+    direct: DirectOutcome,
+}
+
+/// Left-out errors of trajectories, and of rows.
+type LeftOut = (Vec<TrajectoryErrors>, Vec<LeftOutRow>);
+
+impl Both {
+    /// How they predict trajectories left out, on these rows; the slope GP of `pushed` in place of their own, if there is one.
+    fn compared(&self, pushed: Option<&Pushed>) -> (ReadingNumbers, LeftOut) {
+        let Both { kept, slope, direct } = self;
+        let actions = pushed.map(|pushed| pushed.outcome.taken.model.actions(&kept.states));
+        let shares = pushed.map(|pushed| pushed.shares(&kept.trajectories()));
+        let taken = &pushed.map_or(slope, |pushed| &pushed.outcome).taken;
+        let compared = Compared {
+            speeds: &kept.speeds,
+            grouping: kept.grouping,
+            indices: &kept.indices,
+            data: &slope.data,
+            slope: (&taken.left_out, actions.as_ref().unwrap_or(&taken.actions)),
+            direct: (&direct.left_out, &direct.actions),
+            direct_unit: direct.fit.model.unit,
+            shares: shares.as_deref(),
+        };
+        (ReadingNumbers::compared(&compared), (compared.errors(), compared.rows()))
     }
 }
 

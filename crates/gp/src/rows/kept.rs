@@ -66,7 +66,7 @@ pub(crate) struct OfStretches {
 /// Rows kept, in the order of trajectories and samples.
 #[derive(Debug, Clone)]
 pub(crate) struct Kept {
-    /// Which of the rows each is, (M), and where that was recorded.
+    /// Which of the rows each is, or of all rows of its stretches, (M), and where that was recorded.
     pub(crate) rows: Vec<usize>,
     pub(crate) indices: Vec<SampleIndex>,
     /// States with their contexts, (n + p, M).

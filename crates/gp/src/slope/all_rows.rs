@@ -1,6 +1,5 @@
 //! Step 10: the models of a search on more rows than those that were kept: exactly on some, through inducing rows on all.
 
-use crate::Rows;
 use crate::kernel::block::Block;
 use crate::kernel::family::Family;
 use crate::left_out::curl_test::{curl_t, takes_rotation};
@@ -35,17 +34,29 @@ pub(crate) struct OnAllRows {
     pub(crate) outcome: Outcome,
 }
 
+/// Where more rows than those kept come from.
+pub(crate) struct More<'a> {
+    /// Those kept and about so many of the others; none if there are no others.
+    pub(crate) at_most: &'a dyn Fn(usize) -> Option<Kept>,
+    /// Whether their velocities are uncertain.
+    pub(crate) noisy: bool,
+}
+
 /// `thinned`, a search on the rows `kept`, on more rows: the best families again, first exactly with amplitudes anew, then those of
 /// them that are still good on rows through inducing ones, and the best of these on all rows. None where not many rows were thinned, where what hides least was
 /// chosen, or where the movements of `kept` are predicted best without these rows.
-pub(crate) fn on_all_rows(gp: &SlopeGp, rows: &Rows, kept: &Kept, thinned: &Outcome) -> Option<OnAllRows> {
+pub(crate) fn on_all_rows(
+    gp: &SlopeGp,
+    More { at_most, noisy }: More<'_>,
+    kept: &Kept,
+    thinned: &Outcome,
+) -> Option<OnAllRows> {
     if gp.inducing_rows == 0 || thinned.least_hidden {
         return None;
     }
-    let of_most = |most| gp.selection().ok()?.keep_all(rows, kept, most);
-    let more = of_most(EXACT)?;
+    let more = at_most(EXACT)?;
     let beyond = more.dropped.thinned;
-    if kept.variances.is_none() && more.rows.len() + beyond <= MANY * kept.rows.len() {
+    if !noisy && more.rows.len() + beyond <= MANY * kept.rows.len() {
         return None;
     }
     let judge = Judge { weights: &thinned.data.noise_weights, rows: &kept.rows };
@@ -62,9 +73,9 @@ pub(crate) fn on_all_rows(gp: &SlopeGp, rows: &Rows, kept: &Kept, thinned: &Outc
     let least = exact.as_ref().map_or(thinned_error, |exact| error(exact).min(thinned_error));
     let worth = |all: &Kept, data: &SlopeData, of: &Candidate| judge.error(all, data, of) <= HOPELESS * least;
     let before = exact.as_ref().map_or(thinned, |exact| &exact.outcome);
-    let (some, all) = if beyond == 0 { (None, None) } else { all_induced(gp, of_most, before, worth) };
+    let (some, all) = if beyond == 0 { (None, None) } else { all_induced(gp, at_most, before, worth) };
     // Of noisy rows too few are kept to tell nearly equal models apart: the one of more rows knows more.
-    let allowed = if kept.variances.is_some() { ALLOWED } else { 1.0 };
+    let allowed = if noisy { ALLOWED } else { 1.0 };
     let all = all.filter(|all| error(all) <= allowed * least);
     // More rows than an exact model has, but seen through fewer: it knows more only if it predicts clearly better.
     let some = some.filter(|some| error(some) <= CLEARLY * least);
@@ -75,11 +86,11 @@ pub(crate) fn on_all_rows(gp: &SlopeGp, rows: &Rows, kept: &Kept, thinned: &Outc
 /// and of all with those that are the best then.
 fn all_induced(
     gp: &SlopeGp,
-    of_most: impl Fn(usize) -> Option<Kept>,
+    at_most: &dyn Fn(usize) -> Option<Kept>,
     before: &Outcome,
     worth: impl Fn(&Kept, &SlopeData, &Candidate) -> bool,
 ) -> (Option<OnAllRows>, Option<OnAllRows>) {
-    let [some, all] = [FEW, MOST].map(|rows| of_most(rows * gp.inducing_rows));
+    let [some, all] = [FEW, MOST].map(|rows| at_most(rows * gp.inducing_rows));
     let (Some(some), Some(all)) = (some, all) else { return (None, None) };
     if all.rows.len() < SEVERAL * some.rows.len() {
         return (None, induced(gp, all, (before, NEARLY), worth));
@@ -157,15 +168,14 @@ fn compared(
         ModelKind::Helmholtz => (best(ModelKind::Potential), first),
     };
     families.extend(rotating);
-    let potential = potential?;
-    let (taken, other, curl_t) = match rotation {
-        None => (potential, None, None),
-        Some(rotation) => {
+    let (taken, other, curl_t) = match (potential, rotation) {
+        (Some(potential), Some(rotation)) => {
             let t = curl_t(&potential.left_out, &rotation.left_out, &data.noise_weights, &data.groups);
             let rotates = takes_rotation(t, &potential.contender(), &rotation.contender());
             let (taken, other) = if rotates { (rotation, potential) } else { (potential, rotation) };
             (taken, Some(other), Some(t))
         }
+        (potential, rotation) => (potential.or(rotation)?, None, None),
     };
     let outcome = Outcome { data, taken, other, curl_t, families, least_hidden: false };
     Some(OnAllRows { kept, outcome })
@@ -181,6 +191,9 @@ fn nearly_best_of(families: &[FamilyReport], kind: ModelKind, nearly: f64) -> Ve
 fn noise_weights(all: &Kept, before: &Outcome) -> Vec<f64> {
     let lengths =
         || before.taken.model.actions(&all.states).column_iter().map(|action| action.norm()).collect::<Vec<_>>();
+    if let Some(of_stretches) = &all.of_stretches {
+        return of_stretches.weights.clone();
+    }
     match &all.variances {
         Some(variances) => slope_weights(variances, &all.speeds, &lengths()),
         None if before.data.noise_weights.iter().any(|&weight| weight != 1.0) => {

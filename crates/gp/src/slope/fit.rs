@@ -2,12 +2,12 @@ use nalgebra::{DMatrix, DVectorView};
 use rand::Rng;
 
 use crate::report::trust_report::TrustReport;
-use crate::slope::all_rows::{OnAllRows, on_all_rows};
+use crate::slope::all_rows::{More, OnAllRows, on_all_rows};
 use crate::slope::cross_path::CrossPathEvidence;
 use crate::slope::judgement::{ReportInput, report};
 use crate::slope::model::SlopeModel;
 use crate::slope::policy::{SlopePolicy, SlopePotential};
-use crate::slope::pushed::pushed;
+use crate::slope::pushed::{Pushed, pushed};
 use crate::slope::search::outcome;
 use crate::slope::slope_gp::SlopeGp;
 use crate::{GpError, Rows};
@@ -30,11 +30,18 @@ impl SlopeGp {
         let kept = self.selection()?.keep(rows, rng)?;
         let plain = outcome(self, &kept)?;
         let (outcome, kept) = match pushed(self, rows, &kept, &plain) {
-            Some(pushed) => (pushed.outcome, pushed.kept),
-            None => match on_all_rows(self, rows, &kept, &plain) {
-                Some(OnAllRows { kept, outcome }) => (outcome, kept),
-                None => (plain, kept),
-            },
+            Some(pushed) => {
+                let Pushed { outcome, kept, .. } = pushed.on_all_rows(rows);
+                (outcome, kept)
+            }
+            None => {
+                let selection = self.selection()?;
+                let at_most = |most| selection.keep_all(rows, &kept, most);
+                match on_all_rows(self, More { at_most: &at_most, noisy: rows.variances().is_some() }, &kept, &plain) {
+                    Some(OnAllRows { kept, outcome }) => (outcome, kept),
+                    None => (plain, kept),
+                }
+            }
         };
         let across = CrossPathEvidence::of_neighbours(&outcome.data);
         let report = report(&ReportInput { outcome: &outcome, kept: &kept, rows, across });

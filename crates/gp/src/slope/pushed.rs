@@ -1,7 +1,10 @@
 //! Rows of stretches in place of rows of samples, where constraints push: after the search on samples.
 
+use std::borrow::Cow;
+
 use crate::Rows;
 use crate::rows::kept::Kept;
+use crate::slope::all_rows::{More, OnAllRows, on_all_rows};
 use crate::slope::cross_path::CrossPathEvidence;
 use crate::slope::judgement::{ReportInput, report};
 use crate::slope::push_test::PushTest;
@@ -14,6 +17,9 @@ use crate::stretches::{Stretches, Switches};
 pub(crate) struct Pushed {
     pub(crate) outcome: Outcome,
     pub(crate) kept: Kept,
+    /// Where the rows are from, and what searched on them.
+    stretches: Stretches,
+    gp: SlopeGp,
 }
 
 /// The search on rows of stretches (S22) that predicts left-out movements better than `plain`, the one on rows of samples: of stretches in
@@ -27,10 +33,12 @@ pub(crate) fn pushed(gp: &SlopeGp, rows: &Rows, kept: &Kept, plain: &Outcome) ->
     in_task_space(gp, rows, (kept, own), outcome).or(recorded)
 }
 
-/// Rows of stretches in a task space for one row of samples, since every sample has several, and those that set amplitudes; and the most of
-/// both that are taken, unless more are asked for.
-const TIMES: (usize, usize) = (6, 2);
-const MOST: (usize, usize) = (2400, 400);
+/// Rows of stretches in a task space for one row of samples, since every sample has several, those that set amplitudes, and inducing ones;
+/// and the most of them that are taken, unless more are asked for.
+const TIMES: [usize; 3] = [6, 2, 3];
+const MOST: [usize; 3] = [2400, 400, 1500];
+/// Rows for each stretch in the recorded coordinates from which on more say nearly the same.
+const OF_A_STRETCH: usize = 4;
 /// Of those that expect least on few rows, so many are fitted to more: few rows do not show a wrong stretch among many.
 const FINALISTS: usize = 3;
 /// They expect at most so many times what the first of them does.
@@ -58,19 +66,25 @@ fn in_task_space(gp: &SlopeGp, rows: &Rows, (kept, own): (&Kept, &Kept), outcome
     });
     let means = rows.averaged();
     let tried = found.filter_map(|found| {
-        let tried = Pushed::search(gp, &means, kept, &found)?;
-        Some((expected(rows, &tried.outcome, &tried.kept), found, tried.outcome))
+        let tried = Pushed::search(gp, &means, kept, found)?;
+        Some((expected(rows, &tried.outcome, &tried.kept), tried))
     });
-    let mut tried: Vec<(f64, Stretches, Outcome)> = tried.collect();
-    tried.sort_by(|(a, ..), (b, ..)| a.total_cmp(b));
-    let more = |rows: usize, times: usize, most: usize| rows.max((times * rows).min(most));
-    let (max_rows, hyper_rows) = (more(gp.max_rows, TIMES.0, MOST.0), more(gp.hyper_rows, TIMES.1, MOST.1));
-    let larger = SlopeGp { max_rows, hyper_rows, ..gp.clone() };
+    let mut tried: Vec<(f64, Pushed)> = tried.collect();
+    tried.sort_by(|(a, _), (b, _)| a.total_cmp(b));
+    let more = |rows: usize, (times, most): (usize, usize)| rows.max((times * rows).min(most));
+    let [of_rows, of_hyper, of_inducing] = [0, 1, 2].map(|at| (TIMES[at], MOST[at]));
+    let larger = SlopeGp {
+        max_rows: more(gp.max_rows, of_rows),
+        hyper_rows: more(gp.hyper_rows, of_hyper),
+        inducing_rows: more(gp.inducing_rows, of_inducing),
+        ..gp.clone()
+    };
     let least = tried.first()?.0;
-    let finalists = tried.iter().take(FINALISTS).take_while(|(error, ..)| *error <= NEARLY * least);
-    let finals = finalists.filter_map(|(_, found, fewer)| {
-        let kept = found.rows(&means, kept, &larger.selection().ok()?)?;
-        let pushed = Pushed { outcome: outcome_of_nearly_best(&larger, &kept, fewer).ok()?, kept };
+    let finalists = tried.into_iter().take(FINALISTS).take_while(|(error, _)| *error <= NEARLY * least);
+    let finals = finalists.filter_map(|(_, fewer)| {
+        let kept = fewer.stretches.rows(&means, kept, &larger.selection().ok()?)?;
+        let outcome = outcome_of_nearly_best(&larger, &kept, &fewer.outcome).ok()?;
+        let pushed = Pushed { outcome, kept, gp: larger.clone(), ..fewer };
         Some((expected(rows, &pushed.outcome, &pushed.kept), pushed))
     });
     let best = finals.min_by(|(a, _), (b, _)| a.total_cmp(b));
@@ -78,7 +92,7 @@ fn in_task_space(gp: &SlopeGp, rows: &Rows, (kept, own): (&Kept, &Kept), outcome
 }
 
 /// (S19): R² of slow rows that are certain is not that of fast ones alone.
-fn expected(rows: &Rows, outcome: &Outcome, kept: &Kept) -> f64 {
+pub(crate) fn expected(rows: &Rows, outcome: &Outcome, kept: &Kept) -> f64 {
     report(&ReportInput { outcome, kept, rows, across: CrossPathEvidence::Tested }).expected_nupe
 }
 
@@ -92,23 +106,45 @@ fn recorded(gp: &SlopeGp, rows: &Rows, kept: &Kept, plain: &Outcome) -> Option<P
     let view = View::recorded(rows);
     let stretches = Stretches::of(rows, &view, Switches::Sought)?;
     if stretches.push_is_significant() {
-        let pushed = if settled { None } else { Pushed::search(gp, rows, kept, &stretches) }?;
+        let pushed = if settled { None } else { Pushed::search(gp, rows, kept, stretches) }?;
         let r_squared = |outcome: &Outcome| outcome.taken.left_out.r_squared;
         return (r_squared(&pushed.outcome) > r_squared(plain)).then_some(pushed);
     }
     rows.variances()?;
-    let pushed = Pushed::search(gp, rows, kept, &stretches.without_push(rows, &view))?;
+    let pushed = Pushed::search(gp, rows, kept, stretches.without_push(rows, &view))?;
     (expected(rows, &pushed.outcome, &pushed.kept) < expected(rows, plain, kept)).then_some(pushed)
 }
 
 impl Pushed {
-    fn search(gp: &SlopeGp, rows: &Rows, kept: &Kept, stretches: &Stretches) -> Option<Pushed> {
+    fn search(gp: &SlopeGp, rows: &Rows, kept: &Kept, stretches: Stretches) -> Option<Pushed> {
         let kept = stretches.rows(rows, kept, &gp.selection().ok()?)?;
-        Some(Pushed { outcome: outcome(gp, &kept).ok()?, kept })
+        Some(Pushed { outcome: outcome(gp, &kept).ok()?, kept, stretches, gp: gp.clone() })
+    }
+
+    /// Whether the constraints push.
+    pub(crate) fn pushes(&self) -> bool {
+        self.stretches.pushed
+    }
+
+    /// The search on all rows of the stretches, where that pays; as it is otherwise.
+    pub(crate) fn on_all_rows(self, rows: &Rows) -> Pushed {
+        let Pushed { outcome, kept, stretches, gp } = &self;
+        // Rows of one stretch share the error of their directions.
+        if stretches.through.is_none() && kept.rows.len() >= OF_A_STRETCH * stretches.all.len() {
+            return self;
+        }
+        let of_samples = if stretches.through.is_some() { rows.averaged() } else { Cow::Borrowed(rows) };
+        let at_most = |most| stretches.more_rows(&of_samples, kept, most);
+        let more = More { at_most: &at_most, noisy: rows.variances().is_some() };
+        match on_all_rows(gp, more, kept, outcome) {
+            Some(OnAllRows { kept, outcome }) => Pushed { kept, outcome, ..self },
+            None => self,
+        }
     }
 
     /// Held-out squared error of one row a sample on each of these trajectories, as a share of what was to predict in all of its rows: along
-    /// the velocity itself all of it is in one. On a trajectory without stretches the share of all others together.
+    /// the velocity itself all of it is in one. At most 1, that of predicting nothing: in few rows there may be little to predict. On a trajectory
+    /// without stretches the share of all others together.
     pub(crate) fn shares(&self, trajectories: &[usize]) -> Vec<f64> {
         let Outcome { data, taken, .. } = &self.outcome;
         let weighed = |rows: &[usize], of: &dyn Fn(usize) -> f64| -> f64 {
@@ -117,7 +153,7 @@ impl Pushed {
         let of_sample = self.kept.of_stretches.as_ref().map_or(1.0, |of| of.of_sample);
         let share = |rows: &[usize]| {
             let error = weighed(rows, &|row| taken.left_out.residuals[(row, 0)]);
-            error / (of_sample * weighed(rows, &|row| data.targets[(row, 0)]))
+            (error / (of_sample * weighed(rows, &|row| data.targets[(row, 0)]))).min(1.0)
         };
         let all = share(&data.groups.concat());
         let own = self.kept.trajectories();

@@ -49,6 +49,23 @@ impl Stretches {
     ///
     /// In a task space there are several for each sample, whose directions do not depend on the velocity: `rows` may be means (S33) there.
     pub(crate) fn rows(&self, rows: &Rows, kept: &Kept, selection: &Selection) -> Option<Kept> {
+        let found = self.rows_with(rows, kept, selection.max_rows, &[])?;
+        let count = found.rows.len();
+        let hyper = (0..count).step_by(count.div_ceil(selection.hyper_rows).max(1)).collect();
+        Some(Kept { hyper, ..found })
+    }
+
+    /// The same as `some`, rows of these stretches, and those that were thinned, about `most` of these, without hyper rows; none if
+    /// `some` are all.
+    pub(crate) fn more_rows(&self, rows: &Rows, some: &Kept, most: usize) -> Option<Kept> {
+        if some.dropped.thinned == 0 {
+            return None;
+        }
+        self.rows_with(rows, some, most, &some.rows)
+    }
+
+    /// About `most` of all rows, `also` among them, without hyper rows.
+    fn rows_with(&self, rows: &Rows, kept: &Kept, most: usize, also: &[usize]) -> Option<Kept> {
         let free = self.through.as_ref().map(|through| self.free(through, rows));
         let all = || (0..rows.len()).flat_map(|row| self.equations(rows, free.as_deref(), row));
         let (mut sum, mut count) = (0.0, 0_usize);
@@ -59,7 +76,8 @@ impl Stretches {
         let mean_square = sum / count as f64;
         let moving = || all().filter(|equation| equation.part.powi(2) > LEAST * mean_square);
         let of_rows: Vec<usize> = moving().map(|equation| equation.row).collect();
-        let taken = few(&of_rows, rows, selection.max_rows);
+        let mut taken = few(&of_rows, rows, most);
+        taken.extend(also);
         let found = of_rows.len();
         let samples = of_rows.chunk_by(|a, b| a == b).count();
         let chosen = moving().enumerate().filter(|(at, _)| taken.contains(at));
@@ -93,10 +111,10 @@ impl Stretches {
             }),
             indices: used.iter().map(|&row| rows.indices()[row]).collect(),
             groups,
-            hyper: all.iter().copied().step_by(all.len().div_ceil(selection.hyper_rows).max(1)).collect(),
+            hyper: Vec::new(),
             grouping: kept.grouping,
             dropped: RowsDropped { thinned: found - equations.len(), ..RowsDropped::default() },
-            rows: used,
+            rows: taken.into_iter().collect(),
         })
     }
 

@@ -20,7 +20,7 @@ pub use options::{FitOptions, LearnerChoice};
 pub use progress::{Progress, Step};
 pub(crate) use recorded_rows::{averaged, cleaning, least_noisy_rows, rows};
 
-use gp::{AutoFit, AutoGp, DirectGp, FrontEnd, Grouping, LeftOutRow, PushTest, SlopeGp, TrajectoryErrors};
+use gp::{AutoFit, Grouping, LeftOutRow, TrajectoryErrors};
 use motion::{LearntPolicy, Policy};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -34,9 +34,6 @@ use aligning::AlignedFit;
 use decision::{digests_decision, learner_decision, rows_decision};
 use digest::{widened, with_digests};
 use links::LinkNames;
-
-/// Rows that amplitudes are chosen on, as a share of those learnt from.
-const HYPER_SHARE: f64 = 0.5;
 
 /// Learns a policy. The same seed gives the same bits at any number of threads. The model names neither files nor the time,
 /// which only the caller knows.
@@ -151,20 +148,7 @@ pub fn fit_with(
 }
 
 fn learn(rows: &gp::Rows, options: &FitOptions) -> Result<AutoFit, FitError> {
-    let (max_rows, hyper_rows) = (options.max_rows, (options.max_rows as f64 * HYPER_SHARE) as usize);
-    let learner = AutoGp {
-        front_end: FrontEnd::Velocities, // the rows are made already
-        slope: SlopeGp {
-            max_rows,
-            hyper_rows,
-            inducing_rows: options.inducing,
-            push_test: PushTest::Fit,
-            ..SlopeGp::default()
-        },
-        direct: DirectGp { max_rows, hyper_rows, ..DirectGp::default() },
-        reading: options.reading,
-    };
-    Ok(learner.fit(rows, &mut ChaCha8Rng::seed_from_u64(options.seed))?)
+    Ok(options.gaussian_processes().fit(rows, &mut ChaCha8Rng::seed_from_u64(options.seed))?)
 }
 
 /// Whether the Gaussian process's policy, beside PolicyAlign or instead of it, is the slope GP's.

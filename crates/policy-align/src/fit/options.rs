@@ -1,8 +1,11 @@
 use align::Bandwidth;
-use gp::Hypothesis;
+use gp::{AutoGp, DirectGp, FrontEnd, Hypothesis, PushTest, SlopeGp};
 use serde::{Deserialize, Serialize};
 
 use crate::FitError;
+
+/// Share of the rows whose marginal likelihood sets amplitudes.
+const HYPER_SHARE: f64 = 0.5;
 
 /// Options of learning; by default everything is decided from the data.
 #[derive(Debug, Clone, PartialEq)]
@@ -60,6 +63,24 @@ impl Default for FitOptions {
 }
 
 impl FitOptions {
+    /// The slope GP and the direct GP that [`fit`](crate::fit()) lets learn from rows, and chooses between.
+    pub fn gaussian_processes(&self) -> AutoGp {
+        let &FitOptions { max_rows, inducing, reading, .. } = self;
+        let hyper_rows = (max_rows as f64 * HYPER_SHARE) as usize;
+        AutoGp {
+            front_end: FrontEnd::Velocities, // the rows are made already
+            slope: SlopeGp {
+                max_rows,
+                hyper_rows,
+                inducing_rows: inducing,
+                push_test: PushTest::Fit,
+                ..SlopeGp::default()
+            },
+            direct: DirectGp { max_rows, hyper_rows, ..DirectGp::default() },
+            reading,
+        }
+    }
+
     /// The option that asks for whole recordings, if one does, as a flag: then there can be no [`Digest`](crate::Digest).
     pub fn needs_whole_recordings(&self) -> Option<&'static str> {
         match (self.learner, &self.robot) {
