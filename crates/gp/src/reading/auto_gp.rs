@@ -3,17 +3,16 @@ use nalgebra::{DMatrix, DMatrixView, DVectorView, DVectorViewMut};
 use rand::Rng;
 use serde::{Deserialize, Serialize};
 
-use crate::direct::direct_gp::{DirectFit, DirectGp, DirectOutcome};
+use crate::direct::direct_gp::{DirectFit, DirectGp};
 use crate::left_out::comparison::{difference, much_better};
 use crate::reading::Hypothesis;
-use crate::reading::numbers::{Compared, LeftOutRow, ReadingNumbers, TrajectoryErrors};
-use crate::rows::kept::Kept;
-use crate::slope::all_rows::{More, OnAllRows, on_all_rows};
+use crate::reading::both::Both;
+use crate::reading::numbers::{LeftOutRow, ReadingNumbers, TrajectoryErrors};
 use crate::slope::cross_path::CrossPathEvidence;
 use crate::slope::fit::SlopeFit;
 use crate::slope::judgement::{NOTHING_KNOWN, ReportInput, report};
-use crate::slope::pushed::{Pushed, expected, pushed};
-use crate::slope::search::{Outcome, outcome};
+use crate::slope::pushed::{Pushed, pushed};
+use crate::slope::search::outcome;
 use crate::slope::slope_gp::SlopeGp;
 use crate::{FrontEnd, GpError, Rows};
 
@@ -64,12 +63,11 @@ impl AutoGp {
         // Where directions of stretches do not tell, nothing pushed.
         let telling = pushed.filter(|pushed| few.compared(Some(pushed)).0.stretches_tell());
         let (both, pushed) = match telling.map(|pushed| pushed.on_all_rows(rows)) {
-            // Of a push, samples say nothing true, however many they are.
             Some(pushed) if pushed.pushes() => (few, Some(pushed)),
             pushed => {
-                let all = self.on_all_rows(rows, few);
-                let least = expected(rows, &all.slope, &all.kept);
-                (all, pushed.filter(|pushed| expected(rows, &pushed.outcome, &pushed.kept) < least))
+                let all = few.on_all_rows(&self.slope, rows);
+                let better = pushed.filter(|pushed| pushed.expects_less(rows, &all.slope, &all.kept));
+                (all, better)
             }
         };
         let (numbers, left_out) = both.compared(pushed.as_ref());
@@ -91,52 +89,6 @@ impl AutoGp {
         let (direct, (left_out, left_out_rows)) = (direct.fit, left_out);
         let (reading, overridden) = (Some(reading), self.reading);
         Ok(AutoFit { slope, direct, numbers, reading, overridden, left_out, left_out_rows })
-    }
-}
-
-impl AutoGp {
-    /// Both models on all rows, where that pays for slopes; as they are otherwise.
-    fn on_all_rows(&self, rows: &Rows, few: Both) -> Both {
-        let selection = self.slope.selection().ok();
-        let at_most = |most| selection?.keep_all(rows, &few.kept, most);
-        let more = More { at_most: &at_most, noisy: rows.variances().is_some() };
-        let all = on_all_rows(&self.slope, more, &few.kept, &few.slope);
-        let both = all.and_then(|all| Some((few.direct.on_all_rows(&all.kept, self.slope.inducing_rows)?, all)));
-        match both {
-            Some((direct, OnAllRows { kept, outcome })) => Both { kept, slope: outcome, direct },
-            None => few,
-        }
-    }
-}
-
-/// Both models of the same rows.
-struct Both {
-    kept: Kept,
-    slope: Outcome,
-    direct: DirectOutcome,
-}
-
-/// Left-out errors of trajectories, and of rows.
-type LeftOut = (Vec<TrajectoryErrors>, Vec<LeftOutRow>);
-
-impl Both {
-    /// How they predict trajectories left out, on these rows; the slope GP of `pushed` in place of their own, if there is one.
-    fn compared(&self, pushed: Option<&Pushed>) -> (ReadingNumbers, LeftOut) {
-        let Both { kept, slope, direct } = self;
-        let actions = pushed.map(|pushed| pushed.outcome.taken.model.actions(&kept.states));
-        let shares = pushed.map(|pushed| pushed.shares(&kept.trajectories()));
-        let taken = &pushed.map_or(slope, |pushed| &pushed.outcome).taken;
-        let compared = Compared {
-            speeds: &kept.speeds,
-            grouping: kept.grouping,
-            indices: &kept.indices,
-            data: &slope.data,
-            slope: (&taken.left_out, actions.as_ref().unwrap_or(&taken.actions)),
-            direct: (&direct.left_out, &direct.actions),
-            direct_unit: direct.fit.model.unit,
-            shares: shares.as_deref(),
-        };
-        (ReadingNumbers::compared(&compared), (compared.errors(), compared.rows()))
     }
 }
 

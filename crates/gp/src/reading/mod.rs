@@ -1,6 +1,7 @@
 //! Whether the demonstrations were constrained.
 
 pub(crate) mod auto_gp;
+pub(crate) mod both;
 pub(crate) mod near_passes;
 pub(crate) mod numbers;
 

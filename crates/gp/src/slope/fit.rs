@@ -29,17 +29,18 @@ impl SlopeGp {
     pub fn fit<R: Rng + ?Sized>(&self, rows: &Rows, rng: &mut R) -> Result<SlopeFit, GpError> {
         let kept = self.selection()?.keep(rows, rng)?;
         let plain = outcome(self, &kept)?;
-        let (outcome, kept) = match pushed(self, rows, &kept, &plain) {
-            Some(pushed) => {
-                let Pushed { outcome, kept, .. } = pushed.on_all_rows(rows);
-                (outcome, kept)
-            }
-            None => {
+        let pushed = pushed(self, rows, &kept, &plain).map(|pushed| pushed.on_all_rows(rows));
+        let (outcome, kept) = match pushed {
+            Some(pushed) if pushed.pushes() => (pushed.outcome, pushed.kept),
+            pushed => {
                 let selection = self.selection()?;
                 let at_most = |most| selection.keep_all(rows, &kept, most);
-                match on_all_rows(self, More { at_most: &at_most, noisy: rows.variances().is_some() }, &kept, &plain) {
-                    Some(OnAllRows { kept, outcome }) => (outcome, kept),
-                    None => (plain, kept),
+                let more = More { at_most: &at_most, noisy: rows.variances().is_some() };
+                let all = on_all_rows(self, more, &kept, &plain);
+                let all = all.unwrap_or(OnAllRows { kept, outcome: plain });
+                match pushed.filter(|pushed| pushed.expects_less(rows, &all.outcome, &all.kept)) {
+                    Some(Pushed { outcome, kept, .. }) => (outcome, kept),
+                    None => (all.outcome, all.kept),
                 }
             }
         };

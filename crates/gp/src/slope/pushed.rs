@@ -92,7 +92,7 @@ fn in_task_space(gp: &SlopeGp, rows: &Rows, (kept, own): (&Kept, &Kept), outcome
 }
 
 /// (S19): R² of slow rows that are certain is not that of fast ones alone.
-pub(crate) fn expected(rows: &Rows, outcome: &Outcome, kept: &Kept) -> f64 {
+fn expected(rows: &Rows, outcome: &Outcome, kept: &Kept) -> f64 {
     report(&ReportInput { outcome, kept, rows, across: CrossPathEvidence::Tested }).expected_nupe
 }
 
@@ -112,7 +112,7 @@ fn recorded(gp: &SlopeGp, rows: &Rows, kept: &Kept, plain: &Outcome) -> Option<P
     }
     rows.variances()?;
     let pushed = Pushed::search(gp, rows, kept, stretches.without_push(rows, &view))?;
-    (expected(rows, &pushed.outcome, &pushed.kept) < expected(rows, plain, kept)).then_some(pushed)
+    pushed.expects_less(rows, plain, kept).then_some(pushed)
 }
 
 impl Pushed {
@@ -121,9 +121,14 @@ impl Pushed {
         Some(Pushed { outcome: outcome(gp, &kept).ok()?, kept, stretches, gp: gp.clone() })
     }
 
-    /// Whether the constraints push.
+    /// Whether the constraints push: then samples say nothing true, however many they are.
     pub(crate) fn pushes(&self) -> bool {
         self.stretches.pushed
+    }
+
+    /// Whether this expects less than a search on rows of samples.
+    pub(crate) fn expects_less(&self, rows: &Rows, samples: &Outcome, kept: &Kept) -> bool {
+        expected(rows, &self.outcome, &self.kept) < expected(rows, samples, kept)
     }
 
     /// The search on all rows of the stretches, where that pays; as it is otherwise.
@@ -137,7 +142,7 @@ impl Pushed {
         let at_most = |most| stretches.more_rows(&of_samples, kept, most);
         let more = More { at_most: &at_most, noisy: rows.variances().is_some() };
         match on_all_rows(gp, more, kept, outcome) {
-            Some(OnAllRows { kept, outcome }) => Pushed { kept, outcome, ..self },
+            Some(OnAllRows { kept, outcome }) => Pushed { outcome, kept, ..self },
             None => self,
         }
     }

@@ -179,9 +179,17 @@ impl Stretches {
 
 #[cfg(test)]
 mod tests {
+    use demo_gen::demonstrations;
+    use demo_gen::tasks::CyclesWithTask;
     use proptest::prelude::*;
+    use rand::SeedableRng as _;
+    use rand_chacha::ChaCha8Rng;
 
     use super::*;
+    use crate::FrontEnd;
+    use crate::rows::kept::positions;
+    use crate::stretches::Switches;
+    use crate::stretches::view::View;
 
     fn stretch((square, normals): (f64, usize)) -> Stretch {
         Stretch {
@@ -211,6 +219,30 @@ mod tests {
                 Stretches { all, noise: 1.0, pushed: true, through: None }.push_is_significant()
             };
             prop_assert!(!of(0) && !of(1) && of(count.div_ceil(10)) && of(count));
+        }
+    }
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(16))]
+
+        /// More rows of stretches are about as many as asked for, and among them those that there were, unchanged; none beyond all.
+        #[test]
+        fn more_rows_hold_the_fewer(seed in any::<u64>(), few in 20usize..60, most in 60usize..400) {
+            let system = CyclesWithTask { n_trajectories: 6, ..CyclesWithTask::default() };
+            let shown = demonstrations(&system.record(&mut ChaCha8Rng::seed_from_u64(seed)).unwrap()).unwrap();
+            let rows = FrontEnd::Velocities.rows(&shown).unwrap();
+            let selection = |max_rows| Selection { max_rows, hyper_rows: 10, least_snr: 1.5, least_speed: 1e-6 };
+            let samples = selection(few).keep(&rows, &mut ChaCha8Rng::seed_from_u64(seed)).unwrap();
+            let stretches = Stretches::of(&rows, &View::recorded(&rows), Switches::Sought).unwrap();
+            let fewer = stretches.rows(&rows, &samples, &selection(few)).unwrap();
+            let more = stretches.more_rows(&rows, &fewer, most).unwrap();
+            prop_assert!((most..=most + few).contains(&more.rows.len()), "{} of {most}", more.rows.len());
+            for (at, place) in positions(&more.rows, &fewer.rows).into_iter().enumerate() {
+                prop_assert_eq!(more.states.column(place), fewer.states.column(at));
+                prop_assert_eq!(more.velocities.column(place), fewer.velocities.column(at));
+                prop_assert_eq!(more.indices[place], fewer.indices[at]);
+            }
+            let all = stretches.rows(&rows, &samples, &selection(10_000)).unwrap();
+            prop_assert!(stretches.more_rows(&rows, &all, most).is_none());
         }
     }
 }

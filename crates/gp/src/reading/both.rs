@@ -1,0 +1,54 @@
+//! The slope GP and the direct GP of the same rows, before one of them is taken.
+
+use crate::Rows;
+use crate::direct::direct_gp::DirectOutcome;
+use crate::reading::numbers::{Compared, LeftOutRow, ReadingNumbers, TrajectoryErrors};
+use crate::rows::kept::Kept;
+use crate::slope::all_rows::{More, OnAllRows, on_all_rows};
+use crate::slope::pushed::Pushed;
+use crate::slope::search::Outcome;
+use crate::slope::slope_gp::SlopeGp;
+
+/// Both models of the same rows.
+pub(crate) struct Both {
+    pub(crate) kept: Kept,
+    pub(crate) slope: Outcome,
+    pub(crate) direct: DirectOutcome,
+}
+
+/// Left-out errors of trajectories, and of rows.
+pub(crate) type LeftOut = (Vec<TrajectoryErrors>, Vec<LeftOutRow>);
+
+impl Both {
+    /// Both on all rows, where that pays for slopes; as they are otherwise.
+    pub(crate) fn on_all_rows(self, gp: &SlopeGp, rows: &Rows) -> Both {
+        let selection = gp.selection().ok();
+        let at_most = |most| selection?.keep_all(rows, &self.kept, most);
+        let more = More { at_most: &at_most, noisy: rows.variances().is_some() };
+        let all = on_all_rows(gp, more, &self.kept, &self.slope);
+        let both = all.and_then(|all| Some((self.direct.on_all_rows(&all.kept, gp.inducing_rows)?, all)));
+        match both {
+            Some((direct, OnAllRows { kept, outcome })) => Both { kept, slope: outcome, direct },
+            None => self,
+        }
+    }
+
+    /// How they predict trajectories left out, on these rows; the slope GP of `pushed` in place of their own, if there is one.
+    pub(crate) fn compared(&self, pushed: Option<&Pushed>) -> (ReadingNumbers, LeftOut) {
+        let Both { kept, slope, direct } = self;
+        let actions = pushed.map(|pushed| pushed.outcome.taken.model.actions(&kept.states));
+        let shares = pushed.map(|pushed| pushed.shares(&kept.trajectories()));
+        let taken = &pushed.map_or(slope, |pushed| &pushed.outcome).taken;
+        let compared = Compared {
+            speeds: &kept.speeds,
+            grouping: kept.grouping,
+            indices: &kept.indices,
+            data: &slope.data,
+            slope: (&taken.left_out, actions.as_ref().unwrap_or(&taken.actions)),
+            direct: (&direct.left_out, &direct.actions),
+            direct_unit: direct.fit.model.unit,
+            shares: shares.as_deref(),
+        };
+        (ReadingNumbers::compared(&compared), (compared.errors(), compared.rows()))
+    }
+}
