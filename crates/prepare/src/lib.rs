@@ -128,7 +128,7 @@ pub fn prepare<'a>(
     notes.findings.extend(remarks::held(&demonstrations, &state_channels));
     let smoothed = samples::smooth::as_requested(&demonstrations, options.smoothing, &mut notes)?;
     let (demonstrations, velocities) = if let Some(smoothed) = smoothed {
-        (smoothed, samples::noise::as_requested(&demonstrations, &noise, agreement))
+        (smoothed, samples::noise::as_requested(&demonstrations, agreement))
     } else {
         let velocities = samples::noise::decide(&demonstrations, &noise, agreement, &mut notes);
         (demonstrations, velocities)

@@ -82,10 +82,8 @@ impl Prepared {
         };
         // Where smoothing was requested, velocities that count as exact may be differences.
         let velocities = match self.velocities {
-            VelocitySource::Recorded if self.smoothing == Smoothing::Auto => {
-                noise::of_recorded(&demonstrations, &noise)
-            }
-            VelocitySource::Noisy(_) => noise::of_recorded(&demonstrations, &noise),
+            VelocitySource::Recorded if self.smoothing == Smoothing::Auto => noise::of_recorded(&demonstrations),
+            VelocitySource::Noisy(_) => noise::of_recorded(&demonstrations),
             other => other,
         };
         Ok(Prepared {

@@ -11,6 +11,9 @@ const NEEDED: usize = 50;
 /// A median of absolute values times this is the standard deviation of a normal distribution.
 const MEDIAN_TO_DEVIATION: f64 = 1.4826;
 
+/// Share of a variance that fifth differences find of white noise, at least: few of them may find less.
+const WHITE: f64 = 0.5;
+
 /// How noisy recorded positions are.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PositionNoise {
@@ -39,20 +42,8 @@ impl PositionNoise {
         series: impl Fn(&Trajectory) -> &DMatrix<f64>,
     ) -> Result<Self, SmoothingError> {
         let trajectories = demonstrations.trajectories();
-        let found = trajectories.iter().map(|trajectory| trajectory.n_samples().saturating_sub(3)).sum();
-        if found < NEEDED {
-            return Err(SmoothingError::TooFewDifferences { found, needed: NEEDED });
-        }
         let dim = demonstrations.dim();
-        let mut differences = Vec::with_capacity(found);
-        let deviations = DVector::from_fn(dim, |axis, _| {
-            differences.clear();
-            for trajectory in trajectories {
-                let values = series(trajectory).as_slice();
-                differences.extend(third_differences(values, dim, axis, trajectory.times()));
-            }
-            MEDIAN_TO_DEVIATION * median(&mut differences).unwrap_or(0.0) / 20f64.sqrt()
-        });
+        let deviations = deviations::<4>(demonstrations, &series)?;
         let mut step = DVector::zeros(dim);
         let (mut sum, mut count) = (0.0, 0);
         for values in trajectories.iter().map(&series) {
@@ -82,48 +73,89 @@ pub struct VelocityNoise {
     pub variance: f64,
     /// Share of the mean |u|² that is noise.
     pub share: f64,
+    /// Whether fifth differences find it, too: of movement they find far less, unless it has few samples.
+    pub white: bool,
 }
 
 impl VelocityNoise {
+    /// Share from which on it counts, and from which on it does if it is white.
+    const COUNTS: f64 = 1e-3;
+    const COUNTS_IF_WHITE: f64 = 1e-6;
+
+    /// Whether velocities count as exact: noise makes less than a thousandth of their squares, and is not white or makes less than a millionth.
+    pub fn is_negligible(&self) -> bool {
+        self.share <= if self.white { Self::COUNTS_IF_WHITE } else { Self::COUNTS }
+    }
+
     /// By third differences of the velocities, as [`PositionNoise::of`] those of positions; none where some movement has no velocities, or
     /// where they are too few, all the same or too large for an estimate.
     pub fn of(demonstrations: &Demonstrations) -> Option<Self> {
         if demonstrations.trajectories().iter().any(|trajectory| trajectory.velocities().is_none()) {
             return None;
         }
-        let noise = PositionNoise::of_series(demonstrations, |of| of.velocities().unwrap_or(of.states())).ok()?;
+        let series: fn(&Trajectory) -> &DMatrix<f64> = |of| of.velocities().unwrap_or(of.states());
+        let noise = PositionNoise::of_series(demonstrations, series).ok()?;
+        let by_fifth = deviations::<6>(demonstrations, &series).ok();
         let each = demonstrations.trajectories().iter().filter_map(Trajectory::velocities);
         let (power, count) = each.fold((0.0, 0), |(power, count), u| (power + u.norm_squared(), count + u.ncols()));
         let variance = noise.deviations.norm_squared();
-        Some(VelocityNoise { variance, share: variance / (power / count as f64) })
+        let white = by_fifth.is_some_and(|deviations| deviations.norm_squared() >= WHITE * variance);
+        Some(VelocityNoise { variance, share: variance / (power / count as f64), white })
     }
 }
 
-/// |x_{i+3} − 3x_{i+2} + 3x_{i+1} − x_i| of one axis; `rows` holds x_ij at `i * dim + j`.
-pub(crate) fn third_differences<'a>(
+/// Standard deviation of the noise in each dimension, (n), by differences of N samples, of order N − 1.
+fn deviations<const N: usize>(
+    demonstrations: &Demonstrations,
+    series: &impl Fn(&Trajectory) -> &DMatrix<f64>,
+) -> Result<DVector<f64>, SmoothingError> {
+    let trajectories = demonstrations.trajectories();
+    let found = trajectories.iter().map(|trajectory| (trajectory.n_samples() + 1).saturating_sub(N)).sum();
+    if found < NEEDED {
+        return Err(SmoothingError::TooFewDifferences { found, needed: NEEDED });
+    }
+    let dim = demonstrations.dim();
+    let mut all = Vec::with_capacity(found);
+    Ok(DVector::from_fn(dim, |axis, _| {
+        all.clear();
+        for trajectory in trajectories {
+            all.extend(differences::<N>(series(trajectory).as_slice(), dim, axis, trajectory.times()));
+        }
+        MEDIAN_TO_DEVIATION * median(&mut all).unwrap_or(0.0) / squares::<N>().sqrt()
+    }))
+}
+
+/// Absolute differences of N samples, of order N − 1, of one axis: for N = 4 |x_{i+3} − 3x_{i+2} + 3x_{i+1} − x_i|; `rows` holds x_ij
+/// at `i * dim + j`. The factors are those of divided differences, which vanish on polynomials of lower order.
+pub(crate) fn differences<'a, const N: usize>(
     rows: &'a [f64],
     dim: usize,
     axis: usize,
     times: Option<&'a [f64]>,
 ) -> impl Iterator<Item = f64> + 'a {
+    let even = divided_difference(std::array::from_fn::<f64, N, _>(|k| k as f64));
     let x = move |i: usize| rows[i * dim + axis];
-    (3..rows.len() / dim).map(move |i| match times {
-        None => (x(i) - x(i - 3) - 3.0 * (x(i - 1) - x(i - 2))).abs(),
-        Some(times) => {
-            let factors = divided_difference(&times[i - 3..=i]);
-            // Differences first, so that what the samples share is not rounded.
-            (1..4).map(|k| factors[k] * (x(i - 3 + k) - x(i - 3))).sum::<f64>().abs()
-        }
+    let windows = (rows.len() / dim + 1).saturating_sub(N);
+    (0..windows).map(move |first| {
+        let factors = times.map_or(even, |times| divided_difference(std::array::from_fn(|k| times[first + k])));
+        // Differences first, so that what the samples share is not rounded.
+        (1..N).map(|k| factors[k] * (x(first + k) - x(first))).sum::<f64>().abs()
     })
 }
 
-/// Factors c_k ∝ 1/Π_{j ≠ k}(t_k − t_j) of four samples, which vanish on parabolas; Σ c_k² = 20, as on even stamps.
-fn divided_difference(times: &[f64]) -> [f64; 4] {
-    let span = times[3] - times[0];
-    let product = |k: usize| (0..4).filter(|&j| j != k).map(|j| (times[k] - times[j]) / span).product::<f64>();
-    let factors = [0, 1, 2, 3].map(|k| 1.0 / product(k));
-    let norm = (factors.iter().map(|factor| factor * factor).sum::<f64>() / 20.0).sqrt();
+/// Factors c_k ∝ 1/Π_{j ≠ k}(t_k − t_j), with Σ c_k² as on even stamps.
+fn divided_difference<const N: usize>(times: [f64; N]) -> [f64; N] {
+    let span = times[N - 1] - times[0];
+    let product = |k: usize| (0..N).filter(|&j| j != k).map(|j| (times[k] - times[j]) / span).product::<f64>();
+    let factors: [f64; N] = std::array::from_fn(|k| 1.0 / product(k));
+    let norm = (factors.iter().map(|factor| factor * factor).sum::<f64>() / squares::<N>()).sqrt();
     factors.map(|factor| factor / norm)
+}
+
+/// Squares of the factors of N even samples, summed: 20 for N = 4.
+fn squares<const N: usize>() -> f64 {
+    let binomial = |k: usize| (1..=k).map(|i| (N - i) as f64 / i as f64).product::<f64>();
+    (0..N).map(|k| binomial(k).powi(2)).sum()
 }
 
 /// The middle value, or the mean of both; none of nothing.

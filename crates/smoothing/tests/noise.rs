@@ -141,5 +141,39 @@ proptest! {
         let expected = dim as f64 * deviation * deviation;
         prop_assert!((0.7..1.4).contains(&(found.variance / expected)), "{} for {expected}", found.variance);
         prop_assert!((found.share - found.variance / power).abs() < 1e-12 * found.share);
+        prop_assert!(found.white && !found.is_negligible());
+    }
+}
+
+proptest! {
+    /// Noise of a thousandth of the velocities counts, and what third differences find of movement alone does not, as long as a turn has
+    /// ten samples; with fewer it looks like noise.
+    #[test]
+    fn movement_is_not_white(
+        seed in any::<u64>(),
+        deviation in 1.5e-3..0.03f64,
+        samples_a_turn in 10.0..100.0f64,
+        dim in 1..4usize,
+        uneven in 0.0..0.3f64,
+    ) {
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        let mut draw = || -> f64 { StandardNormal.sample(&mut rng) };
+        let times: Vec<f64> = (0..800).map(|at| 0.1 * (f64::from(at) + uneven * draw().clamp(-1.5, 1.5))).collect();
+        let clean = DMatrix::from_fn(dim, 800, |axis, at| {
+            2f64.sqrt() * (std::f64::consts::TAU * 10.0 * times[at] / samples_a_turn + axis as f64).sin()
+        });
+        let noisy = clean.map(|value| value + deviation * draw());
+        let found = |velocities| {
+            let bare = Trajectory::new(DMatrix::zeros(dim, 800), 0.1).unwrap().with_times(times.clone()).unwrap();
+            VelocityNoise::of(&Demonstrations::new(vec![bare.with_velocities(velocities).unwrap()]).unwrap()).unwrap()
+        };
+        let (clean, noisy) = (found(clean), found(noisy));
+        prop_assert!(!clean.white, "{clean:?}");
+        let expected = dim as f64 * deviation * deviation;
+        // Of fast turns more is found than is noise.
+        prop_assert!(noisy.variance > 0.7 * expected, "{noisy:?} for {expected}");
+        if noisy.variance < 1.3 * expected {
+            prop_assert!(noisy.white && !noisy.is_negligible(), "{noisy:?}");
+        }
     }
 }

@@ -58,7 +58,7 @@ impl AutoGp {
         let kept = self.slope.selection()?.keep(rows, rng)?;
         let (slope, direct) = rayon::join(|| outcome(&self.slope, &kept), || self.direct.outcome(&kept));
         let few = Both { kept, slope: slope?, direct: direct? };
-        let free = few.compared(None).0.reading() == Hypothesis::Free;
+        let free = few.compared(None).0.agree_on_free_movement();
         let pushed = if free { None } else { pushed(&self.slope, rows, &few.kept, &few.slope) };
         // Where directions of stretches do not tell, nothing pushed.
         let telling = pushed.filter(|pushed| few.compared(Some(pushed)).0.stretches_tell());

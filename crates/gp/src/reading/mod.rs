@@ -113,6 +113,11 @@ impl ReadingNumbers {
         }
     }
 
+    /// Free movement, and both policies are nearly the same: nothing can have pushed, either.
+    pub(crate) fn agree_on_free_movement(&self) -> bool {
+        self.reading() == Hypothesis::Free && self.gap <= CLOSE
+    }
+
     /// Nothing was hidden, and the slope GP is far better nevertheless.
     pub(crate) fn shows_a_potential(&self) -> bool {
         self.gap > SAME && self.trajectories >= DEMONSTRATIONS && self.direction_tells() && !self.hides()

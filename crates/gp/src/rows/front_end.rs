@@ -29,16 +29,13 @@ pub enum FrontEnd {
     Fused(Fusion),
 }
 
-/// Velocities count as exact if noise makes less than this share of their squares.
-const EXACT_VELOCITIES: f64 = 1e-3;
-
 /// States and velocities of a movement, (n, N) each; the states may have one sample more.
 type Movement<'a> = (Cow<'a, DMatrix<f64>>, Cow<'a, DMatrix<f64>>);
 
 impl FrontEnd {
-    /// Recorded velocities, with their noise (third differences) where that makes a thousandth of their squares or more.
+    /// Recorded velocities, with their noise where that [counts](VelocityNoise::is_negligible).
     pub fn of_velocities(demonstrations: &Demonstrations) -> FrontEnd {
-        let noise = VelocityNoise::of(demonstrations).filter(|noise| noise.share > EXACT_VELOCITIES);
+        let noise = VelocityNoise::of(demonstrations).filter(|noise| !noise.is_negligible());
         let variance = noise.map(|noise| noise.variance / demonstrations.dim() as f64);
         variance.map_or(FrontEnd::Velocities, |variance| FrontEnd::NoisyVelocities { variance })
     }

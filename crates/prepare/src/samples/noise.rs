@@ -13,8 +13,8 @@ use crate::{VelocitySource, numbers};
 const EXACT: f64 = 0.01;
 /// Above this share the user should know.
 const NOISY: f64 = 0.1;
-/// Velocities count as exact if noise makes less than this share of their squares.
-const EXACT_VELOCITIES: f64 = 1e-3;
+/// Up to this share of their squares, noise of velocities does not keep them from correcting positions.
+const CORRECTING: f64 = 1e-3;
 /// Velocities this noisy are worth less than positions.
 const USELESS_VELOCITIES: f64 = 0.2;
 
@@ -108,17 +108,21 @@ pub(crate) fn velocity_variance(demonstrations: &Demonstrations, noise: &Noise) 
 }
 
 /// The kind of recording where the user requested a smoothing.
-pub(crate) fn as_requested(demonstrations: &Demonstrations, noise: &Noise, agreement: Agreement) -> VelocitySource {
+pub(crate) fn as_requested(demonstrations: &Demonstrations, agreement: Agreement) -> VelocitySource {
     if agreement == Agreement::None {
         return VelocitySource::PositionsAsRequested;
     }
-    if agreement == Agreement::Own { of_recorded(demonstrations, noise) } else { VelocitySource::Recorded }
+    if agreement == Agreement::Own { of_recorded(demonstrations) } else { VelocitySource::Recorded }
+}
+
+/// The noise of recorded velocities, if that is more than negligible.
+fn counting(demonstrations: &Demonstrations) -> Option<VelocityNoise> {
+    VelocityNoise::of(demonstrations).filter(|noise| !noise.is_negligible())
 }
 
 /// Recorded velocities, with their noise if that is more than negligible.
-pub(crate) fn of_recorded(demonstrations: &Demonstrations, noise: &Noise) -> VelocitySource {
-    let noisy = noise.velocity_share.filter(|&share| share > EXACT_VELOCITIES);
-    match noisy.and_then(|_| VelocityNoise::of(demonstrations)) {
+pub(crate) fn of_recorded(demonstrations: &Demonstrations) -> VelocitySource {
+    match counting(demonstrations) {
         Some(noise) => VelocitySource::Noisy(noise.variance / demonstrations.dim() as f64),
         None => VelocitySource::Recorded,
     }
@@ -137,20 +141,20 @@ pub(crate) fn decide(
         Some(_) if share < 1e-4 => "position noise is negligible".to_owned(),
         Some(_) => format!("noise makes {} of the squared steps", percent(share)),
     };
-    let noisy_velocities = noise.velocity_share.filter(|&share| share > EXACT_VELOCITIES);
+    let of_velocities = noise.velocity_share.unwrap_or(0.0);
     let recorded = match agreement {
         Agreement::None => VelocitySource::Positions,
         Agreement::Differences if share > EXACT => VelocitySource::Positions,
-        _ if noisy_velocities.is_some_and(|share| share > USELESS_VELOCITIES) => VelocitySource::Positions,
-        _ if share > EXACT && noisy_velocities.is_none() => VelocitySource::Fused,
-        _ => of_recorded(demonstrations, noise),
+        _ if of_velocities > USELESS_VELOCITIES => VelocitySource::Positions,
+        _ if share > EXACT && of_velocities <= CORRECTING => VelocitySource::Fused,
+        _ => of_recorded(demonstrations),
     };
     let (value, why) = match recorded {
         VelocitySource::Recorded => ("velocities as recorded", words),
         VelocitySource::Fused => ("velocities as recorded, positions fused with them", words),
         VelocitySource::Noisy(_) => (
             "velocities as recorded, with their noise",
-            format!("noise share of their squares: {}", percent(noisy_velocities.unwrap_or(0.0))),
+            format!("noise share of their squares: {}", percent(of_velocities)),
         ),
         VelocitySource::Positions if agreement == Agreement::None => ("positions smoothed piecewise", words),
         VelocitySource::Positions | VelocitySource::PositionsAsRequested => {

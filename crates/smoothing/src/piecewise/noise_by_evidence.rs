@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use crate::noise::{median, third_differences};
+use crate::noise::{differences, median};
 use crate::piecewise::scaled::Scaled;
 use crate::piecewise::windows::{Bases, Energy, energies};
 
@@ -58,8 +58,7 @@ fn first_guess(scaled: &Scaled<'_>) -> f64 {
         .movements
         .iter()
         .flat_map(|movement| {
-            (0..movement.dim)
-                .flat_map(|j| third_differences(&movement.rows, movement.dim, j, movement.recorded.times()))
+            (0..movement.dim).flat_map(|j| differences::<4>(&movement.rows, movement.dim, j, movement.recorded.times()))
         })
         .collect();
     let deviation = median(&mut differences).unwrap_or(0.0) / 0.6745;
