@@ -49,6 +49,8 @@ pub(crate) struct Stretch {
     rank: usize,
     /// The same, of a whole movement.
     whole: Option<usize>,
+    /// Whether other movements say otherwise (S44): rows are not taken from it.
+    pub(crate) contradicted: bool,
 }
 
 /// Whether constraints may switch within a movement.
@@ -227,6 +229,7 @@ fn stretch(rows: &Rows, view: &View<'_>, inside: &[usize], (rank, least): (usize
         lengths: span.lengths,
         directions: span.directions,
         whole: None,
+        contradicted: false,
     })
 }
 

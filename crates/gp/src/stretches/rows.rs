@@ -34,13 +34,15 @@ struct Equation<'a> {
     noise: f64,
     /// ℓ_k of its direction.
     direction_length: f64,
+    /// Whether its stretch is.
+    contradicted: bool,
 }
 
 /// At most `most` of the equations that these rows give, by their places.
-fn few(of_rows: &[usize], rows: &Rows, most: usize) -> BTreeSet<usize> {
+fn few(of_rows: &[usize], rows: &Rows, most: usize) -> Vec<usize> {
     let trajectory = |&at: &usize| rows.indices()[of_rows[at]].trajectory;
     let all: Vec<usize> = (0..of_rows.len()).collect();
-    thinned(all.chunk_by(|a, b| trajectory(a) == trajectory(b)), most, || MIDDLE).into_iter().collect()
+    thinned(all.chunk_by(|a, b| trajectory(a) == trajectory(b)), most, || MIDDLE)
 }
 
 impl Stretches {
@@ -53,6 +55,13 @@ impl Stretches {
         let count = found.rows.len();
         let hyper = (0..count).step_by(count.div_ceil(selection.hyper_rows).max(1)).collect();
         Some(Kept { hyper, ..found })
+    }
+
+    /// `some`, rows of these stretches, and about `each` of every stretch, contradicted or not, without hyper rows.
+    pub(crate) fn of_each(&self, rows: &Rows, some: &Kept, each: usize) -> Option<Kept> {
+        let mut all = self.clone();
+        all.all.iter_mut().for_each(|stretch| stretch.contradicted = false);
+        all.rows_with(rows, some, each * self.all.len(), &some.rows)
     }
 
     /// The same as `some`, rows of these stretches, and those that were thinned, about `most` of these, without hyper rows; none if
@@ -75,8 +84,9 @@ impl Stretches {
         });
         let mean_square = sum / count as f64;
         let moving = || all().filter(|equation| equation.part.powi(2) > LEAST * mean_square);
-        let of_rows: Vec<usize> = moving().map(|equation| equation.row).collect();
-        let mut taken = few(&of_rows, rows, most);
+        let usable = moving().enumerate().filter(|(_, equation)| !equation.contradicted);
+        let (places, of_rows): (Vec<usize>, Vec<usize>) = usable.map(|(at, equation)| (at, equation.row)).unzip();
+        let mut taken: BTreeSet<usize> = few(&of_rows, rows, most).into_iter().map(|at| places[at]).collect();
         taken.extend(also);
         let found = of_rows.len();
         let samples = of_rows.chunk_by(|a, b| a == b).count();
@@ -142,17 +152,24 @@ impl Stretches {
             (Some(_), Some(variances)) => variances[row] / self.noise,
             _ => 1.0,
         };
+        let contradicted = self.at(rows.indices()[row]).is_some_and(|stretch| stretch.contradicted);
         recorded.chain(free).map(move |(direction, direction_length)| {
             let part = direction.dot(&rows.velocities().column(row));
-            Equation { row, direction, part, noise, direction_length }
+            Equation { row, direction, part, noise, direction_length, contradicted }
         })
     }
 
     /// The stretch that holds a sample.
     fn at(&self, index: SampleIndex) -> Option<&Stretch> {
+        Some(&self.all[self.place(index)?])
+    }
+
+    /// Which of the stretches holds a sample.
+    pub(crate) fn place(&self, index: SampleIndex) -> Option<usize> {
         let before = |stretch: &Stretch| (stretch.trajectory, stretch.samples.1) < (index.trajectory, index.sample);
-        let next = self.all.get(self.all.partition_point(before))?;
-        (next.trajectory == index.trajectory && next.samples.0 <= index.sample).then_some(next)
+        let place = self.all.partition_point(before);
+        let next = self.all.get(place)?;
+        (next.trajectory == index.trajectory && next.samples.0 <= index.sample).then_some(place)
     }
 
     /// Root mean square of the pushes A⁺b, in units of the state per second.
@@ -201,6 +218,7 @@ mod tests {
             significance: (square, normals),
             rank: 3 - normals,
             whole: None,
+            contradicted: false,
         }
     }
 

@@ -1,5 +1,7 @@
 //! Rows of stretches in place of rows of samples, where constraints push: after the search on samples.
 
+mod contradicted;
+
 use std::borrow::Cow;
 
 use crate::Rows;
@@ -118,7 +120,13 @@ fn recorded(gp: &SlopeGp, rows: &Rows, kept: &Kept, plain: &Outcome) -> Option<P
 impl Pushed {
     fn search(gp: &SlopeGp, rows: &Rows, kept: &Kept, stretches: Stretches) -> Option<Pushed> {
         let kept = stretches.rows(rows, kept, &gp.selection().ok()?)?;
-        Some(Pushed { outcome: outcome(gp, &kept).ok()?, kept, stretches, gp: gp.clone() })
+        let pushed = Pushed { outcome: outcome(gp, &kept).ok()?, kept, stretches, gp: gp.clone() };
+        Some(pushed.without_contradicted(rows))
+    }
+
+    /// The samples that rows of the stretches are of: in a task space perhaps means.
+    fn of_samples<'a>(&self, rows: &'a Rows) -> Cow<'a, Rows> {
+        if self.stretches.through.is_some() { rows.averaged() } else { Cow::Borrowed(rows) }
     }
 
     /// Whether the constraints push: then samples say nothing true, however many they are.
@@ -138,7 +146,7 @@ impl Pushed {
         if stretches.through.is_none() && kept.rows.len() >= OF_A_STRETCH * stretches.all.len() {
             return self;
         }
-        let of_samples = if stretches.through.is_some() { rows.averaged() } else { Cow::Borrowed(rows) };
+        let of_samples = self.of_samples(rows);
         let at_most = |most| stretches.more_rows(&of_samples, kept, most);
         let more = More { at_most: &at_most, noisy: rows.variances().is_some() };
         match on_all_rows(gp, more, kept, outcome) {

@@ -1,0 +1,80 @@
+//! Wrong stretches among many (S44): a switch that was not seen, or noise taken for a direction.
+
+use motion::upper_median;
+
+use crate::Rows;
+use crate::rows::kept::positions;
+use crate::slope::pushed::Pushed;
+use crate::slope::search::{Outcome, outcome};
+
+/// Error of a stretch, in that of the median, above which it is contradicted.
+const TIMES: f64 = 25.0;
+/// Error of the other stretches, in that before, up to which a model without contradicted ones is taken at first, and once one was.
+const CLEARLY: f64 = 0.7;
+const ANY: f64 = 1.0;
+/// How often they are looked for: a better model shows more of them, and that some are none.
+const ROUNDS: usize = 4;
+/// Rows of each stretch that are compared, on average.
+const EACH: usize = 4;
+
+impl Pushed {
+    /// The search without the stretches that other movements contradict, if that predicts the others clearly better.
+    pub(super) fn without_contradicted(self, rows: &Rows) -> Pushed {
+        let rows = &*self.of_samples(rows);
+        let mut errors = self.errors(rows);
+        let (mut taken, mut allowed) = (self, CLEARLY);
+        for _ in 0..ROUNDS {
+            let Some(clearer) = taken.without_largest(rows, &errors) else { break };
+            let now = clearer.errors(rows);
+            if clearer.sum(&now) > allowed * clearer.sum(&errors) {
+                break;
+            }
+            (taken, errors, allowed) = (clearer, now, ANY);
+        }
+        taken
+    }
+
+    /// The search without stretches of the largest errors; none if they are those that it is without already.
+    fn without_largest(&self, rows: &Rows, errors: &[Option<f64>]) -> Option<Pushed> {
+        let Pushed { kept, gp, .. } = self;
+        let most = TIMES * upper_median(errors.iter().copied().flatten().collect())?;
+        let mut stretches = self.stretches.clone();
+        for (stretch, error) in stretches.all.iter_mut().zip(errors) {
+            stretch.contradicted = error.is_some_and(|error| error > most);
+        }
+        let same = stretches.all.iter().zip(&self.stretches.all).all(|(a, b)| a.contradicted == b.contradicted);
+        if same {
+            return None;
+        }
+        let kept = stretches.rows(rows, kept, &gp.selection().ok()?)?;
+        Some(Pushed { outcome: outcome(gp, &kept).ok()?, kept, stretches, gp: gp.clone() })
+    }
+
+    /// Of the stretches that are not contradicted.
+    fn sum(&self, errors: &[Option<f64>]) -> f64 {
+        let each = errors.iter().zip(&self.stretches.all).filter(|(_, stretch)| !stretch.contradicted);
+        each.filter_map(|(error, _)| *error).sum()
+    }
+
+    /// Mean of e²/D of some rows of each stretch, contradicted or not, predicted by other movements; none of those that have no rows.
+    fn errors(&self, rows: &Rows) -> Vec<Option<f64>> {
+        let Pushed { outcome: Outcome { data, taken, .. }, kept, stretches, .. } = self;
+        let Some(some) = stretches.of_each(rows, kept, EACH) else { return vec![None; stretches.all.len()] };
+        let actions = taken.model.actions(&some.states);
+        // Of rows that were not learnt from, the model knows no more.
+        let mut residuals: Vec<f64> = (0..some.rows.len())
+            .map(|row| some.speeds[row] - some.velocities.column(row).dot(&actions.column(row)) / some.speeds[row])
+            .collect();
+        for (at, place) in positions(&some.rows, &kept.rows).into_iter().enumerate() {
+            residuals[place] = data.speed * taken.left_out.residuals[(at, 0)];
+        }
+        let weights = some.of_stretches.as_ref().map(|of| &of.weights);
+        let mut sums = vec![(0.0, 0_usize); stretches.all.len()];
+        for (row, residual) in residuals.into_iter().enumerate() {
+            let Some(stretch) = stretches.place(some.indices[row]) else { continue };
+            sums[stretch].0 += residual.powi(2) / weights.map_or(1.0, |weights| weights[row]);
+            sums[stretch].1 += 1;
+        }
+        sums.into_iter().map(|(sum, count)| (count > 0).then(|| sum / count as f64)).collect()
+    }
+}
