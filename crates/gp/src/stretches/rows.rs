@@ -174,8 +174,14 @@ impl Stretches {
 
     /// Root mean square of the pushes A⁺b, in units of the state per second.
     fn push(&self) -> f64 {
-        let squares: f64 = self.all.iter().map(|stretch| stretch.push.norm_squared()).sum();
-        (squares / self.all.len() as f64).sqrt()
+        let (squares, count) =
+            self.right().fold((0.0, 0), |(sum, count), stretch| (sum + stretch.push.norm_squared(), count + 1));
+        (squares / f64::from(count)).sqrt()
+    }
+
+    /// Those that are not contradicted.
+    fn right(&self) -> impl Iterator<Item = &Stretch> {
+        self.all.iter().filter(|stretch| !stretch.contradicted)
     }
 
     /// (S24).
@@ -185,7 +191,7 @@ impl Stretches {
 
     /// Mean square of the pushes along normals, in units of what noise would give: about 1 where nothing pushes.
     fn significance(&self) -> f64 {
-        let all = self.all.iter().map(|stretch| stretch.significance);
+        let all = self.right().map(|stretch| stretch.significance);
         let (squares, normals) = all.fold((0.0, 0.0), |(squares, normals), (square, count)| {
             let count = count as f64;
             (squares + square.min(MOST_OF_ONE * count), normals + count)

@@ -5,7 +5,7 @@ use motion::upper_median;
 use crate::Rows;
 use crate::rows::kept::positions;
 use crate::slope::pushed::Pushed;
-use crate::slope::search::{Outcome, outcome};
+use crate::slope::search::{Outcome, outcome, outcome_of_nearly_best};
 
 /// Error of a stretch, in that of the median, above which it is contradicted.
 const TIMES: f64 = 25.0;
@@ -47,7 +47,12 @@ impl Pushed {
             return None;
         }
         let kept = stretches.rows(rows, kept, &gp.selection().ok()?)?;
-        Some(Pushed { outcome: outcome(gp, &kept).ok()?, kept, stretches, gp: gp.clone() })
+        // In a task space rows are many, and of a few models already.
+        let outcome = match stretches.through {
+            Some(_) => outcome_of_nearly_best(gp, &kept, &self.outcome),
+            None => outcome(gp, &kept),
+        };
+        Some(Pushed { outcome: outcome.ok()?, kept, stretches, gp: gp.clone() })
     }
 
     /// Of the stretches that are not contradicted.

@@ -30,9 +30,11 @@ pub(crate) fn pushed(gp: &SlopeGp, rows: &Rows, kept: &Kept, plain: &Outcome) ->
     if gp.push_test == PushTest::AssumeNone {
         return None;
     }
-    let recorded = recorded(gp, rows, kept, plain);
+    let recorded = recorded(gp, rows, kept, plain).map(|pushed| pushed.without_contradicted(rows));
     let (outcome, own) = recorded.as_ref().map_or((plain, kept), |of| (&of.outcome, &of.kept));
-    in_task_space(gp, rows, (kept, own), outcome).or(recorded)
+    let in_task_space = in_task_space(gp, rows, (kept, own), outcome);
+    // Only then: what a few wrong stretches say tells that all of them are.
+    in_task_space.map(|pushed| pushed.without_contradicted(rows)).or(recorded)
 }
 
 /// Rows of stretches in a task space for one row of samples, since every sample has several, those that set amplitudes, and inducing ones;
@@ -120,8 +122,7 @@ fn recorded(gp: &SlopeGp, rows: &Rows, kept: &Kept, plain: &Outcome) -> Option<P
 impl Pushed {
     fn search(gp: &SlopeGp, rows: &Rows, kept: &Kept, stretches: Stretches) -> Option<Pushed> {
         let kept = stretches.rows(rows, kept, &gp.selection().ok()?)?;
-        let pushed = Pushed { outcome: outcome(gp, &kept).ok()?, kept, stretches, gp: gp.clone() };
-        Some(pushed.without_contradicted(rows))
+        Some(Pushed { outcome: outcome(gp, &kept).ok()?, kept, stretches, gp: gp.clone() })
     }
 
     /// The samples that rows of the stretches are of: in a task space perhaps means.
