@@ -105,11 +105,21 @@ impl System {
     /// The same, with the constraints: of each movement the sample from which the second held, and the rows of both as
     /// orthonormal columns.
     pub(crate) fn with_truth(&self, push: f64, noise: f64, seed: u64) -> (Demonstrations, Vec<Switched>) {
+        self.recorded((MOVEMENTS, SAMPLES), (push, noise), seed)
+    }
+
+    /// So many movements of so many samples.
+    pub(crate) fn recorded(
+        &self,
+        (count, samples): (usize, usize),
+        (push, noise): (f64, f64),
+        seed: u64,
+    ) -> (Demonstrations, Vec<Switched>) {
         let mut truth = Vec::new();
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         let rms = self.rms();
         let step = 2.0 * self.span / (40.0 * rms);
-        let movements = (0..MOVEMENTS).map(|_| {
+        let movements = (0..count).map(|_| {
             let mut movement = Movement {
                 policy: &|x| self.policy(x),
                 integration: Integration::Euler,
@@ -117,9 +127,9 @@ impl System {
                 state: self.start(&mut rng),
                 constraint: Constraint::none(self.dim),
             };
-            let switch = 10 + (20.0 * rng.random::<f64>()) as usize;
+            let switch = samples / 4 + (0.5 * samples as f64 * rng.random::<f64>()) as usize;
             let (mut states, mut velocities, mut bases) = (Vec::new(), Vec::new(), Vec::new());
-            for sample in 0..SAMPLES {
+            for sample in 0..samples {
                 if self.rank > 0 && (sample == 0 || sample == switch) {
                     let draw = DMatrix::from_fn(self.dim, self.rank, |_, _| normal(&mut rng));
                     let basis = draw.qr().q();
@@ -132,7 +142,7 @@ impl System {
                 velocities.extend(u.iter().map(|u| u + noise * rms / (self.dim as f64).sqrt() * normal(&mut rng)));
             }
             truth.push(Switched { switch, bases });
-            let matrix = |numbers| DMatrix::from_vec(self.dim, SAMPLES, numbers);
+            let matrix = |numbers| DMatrix::from_vec(self.dim, samples, numbers);
             Trajectory::new(matrix(states), step).unwrap().with_velocities(matrix(velocities)).unwrap()
         });
         (Demonstrations::new(movements.collect()).unwrap(), truth)
