@@ -1,3 +1,5 @@
+use std::cmp::Ordering;
+
 use motion::{Certainty, Demonstrations, LearnError, Learner, LearntPolicy, Policy, Potential, SampleIndex};
 use nalgebra::{DMatrix, DMatrixView, DVectorView, DVectorViewMut};
 use rand::Rng;
@@ -66,7 +68,10 @@ impl AutoGp {
             Some(pushed) if pushed.pushes() => (few, Some(pushed)),
             pushed => {
                 let all = few.on_all_rows(&self.slope, rows);
-                let better = pushed.filter(|pushed| pushed.expects_less(rows, &all.slope, &all.kept));
+                let better = pushed.filter(|pushed| {
+                    let tells = all.compared(Some(pushed)).0.stretches_tell();
+                    tells && pushed.expects_less(rows, &all.slope, &all.kept)
+                });
                 (all, better)
             }
         };
@@ -128,13 +133,25 @@ impl AutoFit {
     /// scales have to (S25), by the slope GPs' errors as shares of what there is to predict, at most those of predicting nothing.
     pub fn is_much_worse_than(&self, other: &AutoFit) -> bool {
         let share = |of: &TrajectoryErrors| (of.slope / of.seen).min(1.0);
-        let gains: Vec<f64> =
-            self.left_out.iter().zip(&other.left_out).map(|(own, of)| share(own) - share(of)).collect();
+        // Fits of other rows may lack some trajectories; parts of one trajectory are those of both.
+        let (mut own, mut of) = (self.left_out.iter().peekable(), other.left_out.iter().peekable());
+        let mut gains = Vec::new();
+        while let (Some(a), Some(b)) = (own.peek(), of.peek()) {
+            match a.trajectory.cmp(&b.trajectory) {
+                Ordering::Less => own.next(),
+                Ordering::Greater => of.next(),
+                Ordering::Equal => {
+                    gains.push(share(a) - share(b));
+                    own.next();
+                    of.next()
+                }
+            };
+        }
         let unexplained = |of: &AutoFit| 1.0 - of.slope.report.r_squared;
         much_better(&gains, (unexplained(self), unexplained(other))).is_some()
     }
 
-    /// Rows that both policies learnt from, each predicted without its trajectory; none of what was stored and read back.
+    /// Rows of samples that the policies learnt from, or with pushes the direct one, each predicted without its trajectory; none of what was stored and read back.
     pub fn left_out_rows(&self) -> &[LeftOutRow] {
         &self.left_out_rows
     }

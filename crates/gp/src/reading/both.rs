@@ -4,7 +4,7 @@ use crate::Rows;
 use crate::direct::direct_gp::DirectOutcome;
 use crate::reading::numbers::{Compared, LeftOutRow, ReadingNumbers, TrajectoryErrors};
 use crate::rows::kept::Kept;
-use crate::slope::all_rows::{More, OnAllRows, on_all_rows};
+use crate::slope::all_rows::{OnAllRows, on_all_samples};
 use crate::slope::pushed::Pushed;
 use crate::slope::search::Outcome;
 use crate::slope::slope_gp::SlopeGp;
@@ -22,10 +22,7 @@ pub(crate) type LeftOut = (Vec<TrajectoryErrors>, Vec<LeftOutRow>);
 impl Both {
     /// Both on all rows, where that pays for slopes; as they are otherwise.
     pub(crate) fn on_all_rows(self, gp: &SlopeGp, rows: &Rows) -> Both {
-        let selection = gp.selection().ok();
-        let at_most = |most| selection?.keep_all(rows, &self.kept, most);
-        let more = More { at_most: &at_most, noisy: rows.variances().is_some() };
-        let all = on_all_rows(gp, more, &self.kept, &self.slope);
+        let all = on_all_samples(gp, rows, &self.kept, &self.slope);
         let both = all.and_then(|all| Some((self.direct.on_all_rows(&all.kept, gp.inducing_rows)?, all)));
         match both {
             Some((direct, OnAllRows { kept, outcome })) => Both { kept, slope: outcome, direct },

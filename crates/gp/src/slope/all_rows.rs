@@ -1,5 +1,6 @@
 //! Step 10: the models of a search on more rows than those that were kept: exactly on some, through inducing rows on all.
 
+use crate::Rows;
 use crate::kernel::block::Block;
 use crate::kernel::family::Family;
 use crate::left_out::curl_test::{curl_t, takes_rotation};
@@ -27,11 +28,20 @@ const HOPELESS: f64 = 2.0;
 const FEW: usize = 16;
 const SEVERAL: usize = 3;
 const MOST: usize = 64;
+/// Inducing rows beyond which rows are not more: time goes with the square of the former.
+const INDUCING: usize = 500;
 
 /// More rows, and the outcome on them.
 pub(crate) struct OnAllRows {
     pub(crate) kept: Kept,
     pub(crate) outcome: Outcome,
+}
+
+/// [`on_all_rows`] of rows of samples.
+pub(crate) fn on_all_samples(gp: &SlopeGp, rows: &Rows, kept: &Kept, thinned: &Outcome) -> Option<OnAllRows> {
+    let selection = gp.selection().ok()?;
+    let at_most = |most| selection.keep_all(rows, kept, most);
+    on_all_rows(gp, More { at_most: &at_most, noisy: rows.variances().is_some() }, kept, thinned)
 }
 
 /// Where more rows than those kept come from.
@@ -90,7 +100,7 @@ fn all_induced(
     before: &Outcome,
     worth: impl Fn(&Kept, &SlopeData, &Candidate) -> bool,
 ) -> (Option<OnAllRows>, Option<OnAllRows>) {
-    let [some, all] = [FEW, MOST].map(|rows| at_most(rows * gp.inducing_rows));
+    let [some, all] = [FEW, MOST].map(|rows| at_most(rows * gp.inducing_rows.min(INDUCING)));
     let (Some(some), Some(all)) = (some, all) else { return (None, None) };
     if all.rows.len() < SEVERAL * some.rows.len() {
         return (None, induced(gp, all, (before, NEARLY), worth));
@@ -187,13 +197,13 @@ fn nearly_best_of(families: &[FamilyReport], kind: ModelKind, nearly: f64) -> Ve
     nearly.into_iter().filter_map(|report| Some((report.family, &*report.fit.as_ref()?.amplitudes))).collect()
 }
 
-/// D of other rows as it was of those before.
+/// D of other rows as it was of those before; rows of stretches have theirs.
 fn noise_weights(all: &Kept, before: &Outcome) -> Vec<f64> {
-    let lengths =
-        || before.taken.model.actions(&all.states).column_iter().map(|action| action.norm()).collect::<Vec<_>>();
     if let Some(of_stretches) = &all.of_stretches {
         return of_stretches.weights.clone();
     }
+    let lengths =
+        || before.taken.model.actions(&all.states).column_iter().map(|action| action.norm()).collect::<Vec<_>>();
     match &all.variances {
         Some(variances) => slope_weights(variances, &all.speeds, &lengths()),
         None if before.data.noise_weights.iter().any(|&weight| weight != 1.0) => {

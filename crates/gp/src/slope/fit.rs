@@ -2,7 +2,7 @@ use nalgebra::{DMatrix, DVectorView};
 use rand::Rng;
 
 use crate::report::trust_report::TrustReport;
-use crate::slope::all_rows::{More, OnAllRows, on_all_rows};
+use crate::slope::all_rows::{OnAllRows, on_all_samples};
 use crate::slope::cross_path::CrossPathEvidence;
 use crate::slope::judgement::{ReportInput, report};
 use crate::slope::model::SlopeModel;
@@ -33,10 +33,7 @@ impl SlopeGp {
         let (outcome, kept) = match pushed {
             Some(pushed) if pushed.pushes() => (pushed.outcome, pushed.kept),
             pushed => {
-                let selection = self.selection()?;
-                let at_most = |most| selection.keep_all(rows, &kept, most);
-                let more = More { at_most: &at_most, noisy: rows.variances().is_some() };
-                let all = on_all_rows(self, more, &kept, &plain);
+                let all = on_all_samples(self, rows, &kept, &plain);
                 let all = all.unwrap_or(OnAllRows { kept, outcome: plain });
                 match pushed.filter(|pushed| pushed.expects_less(rows, &all.outcome, &all.kept)) {
                     Some(Pushed { outcome, kept, .. }) => (outcome, kept),

@@ -46,7 +46,7 @@ fn few(of_rows: &[usize], rows: &Rows, most: usize) -> Vec<usize> {
 }
 
 impl Stretches {
-    /// Rows of all samples that lie in stretches, with their noise weights (S23); evenly many of them, where they are more
+    /// Rows of all samples that lie in stretches, but for contradicted ones, with their noise weights (S23); evenly many of them, where they are more
     /// than `selection` allows. None if they are of far fewer movements than `kept` ones.
     ///
     /// In a task space there are several for each sample, whose directions do not depend on the velocity: `rows` may be means (S33) there.
@@ -57,11 +57,11 @@ impl Stretches {
         Some(Kept { hyper, ..found })
     }
 
-    /// `some`, rows of these stretches, and about `each` of every stretch, contradicted or not, without hyper rows.
-    pub(crate) fn of_each(&self, rows: &Rows, some: &Kept, each: usize) -> Option<Kept> {
+    /// `some`, rows of these stretches, and about `most` of all stretches, contradicted or not, without hyper rows.
+    pub(crate) fn of_any(&self, rows: &Rows, some: &Kept, most: usize) -> Option<Kept> {
         let mut all = self.clone();
         all.all.iter_mut().for_each(|stretch| stretch.contradicted = false);
-        all.rows_with(rows, some, each * self.all.len(), &some.rows)
+        all.rows_with(rows, some, most, &some.rows)
     }
 
     /// The same as `some`, rows of these stretches, and those that were thinned, about `most` of these, without hyper rows; none if

@@ -111,6 +111,9 @@ fn integrable(prepared: &Prepared) -> Result<(Demonstrations, Integration, &'sta
             (averaged, Integration::Velocity, "recorded; positions smoothed as requested")
         }
         VelocitySource::Recorded => (averaged, Integration::Velocity, "recorded; they agree with the steps"),
+        VelocitySource::Noisy(_) if prepared.noise.velocities_correct_positions() => {
+            (averaged, Integration::Velocity, "recorded; their noise is small")
+        }
         VelocitySource::Fused | VelocitySource::Noisy(_) => {
             (smooth()?, Integration::Velocity, "recorded; positions smoothed (9 samples, degree 2)")
         }

@@ -35,6 +35,13 @@ pub struct Noise {
     pub velocity_share: Option<f64>,
 }
 
+impl Noise {
+    /// Whether recorded velocities are exact enough to correct positions, or to need no smooth ones.
+    pub fn velocities_correct_positions(&self) -> bool {
+        self.velocity_share.is_none_or(|share| share <= CORRECTING)
+    }
+}
+
 /// Of positions, and of velocities where they were recorded.
 pub(crate) fn of(demonstrations: &Demonstrations) -> Noise {
     let positions = PositionNoise::of(demonstrations).ok().map(|noise| with_resolution(demonstrations, noise));
@@ -146,7 +153,7 @@ pub(crate) fn decide(
         Agreement::None => VelocitySource::Positions,
         Agreement::Differences if share > EXACT => VelocitySource::Positions,
         _ if of_velocities > USELESS_VELOCITIES => VelocitySource::Positions,
-        _ if share > EXACT && of_velocities <= CORRECTING => VelocitySource::Fused,
+        _ if share > EXACT && noise.velocities_correct_positions() => VelocitySource::Fused,
         _ => of_recorded(demonstrations),
     };
     let (value, why) = match recorded {

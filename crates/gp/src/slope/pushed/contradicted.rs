@@ -14,8 +14,9 @@ const CLEARLY: f64 = 0.7;
 const ANY: f64 = 1.0;
 /// How often they are looked for: a better model shows more of them, and that some are none.
 const ROUNDS: usize = 4;
-/// Rows of each stretch that are compared, on average.
+/// Rows of each stretch that are compared, on average, and of all.
 const EACH: usize = 4;
+const ALL: usize = 20_000;
 
 impl Pushed {
     /// The search without the stretches that other movements contradict, if that predicts the others clearly better.
@@ -26,7 +27,8 @@ impl Pushed {
         for _ in 0..ROUNDS {
             let Some(clearer) = taken.without_largest(rows, &errors) else { break };
             let now = clearer.errors(rows);
-            if clearer.sum(&now) > allowed * clearer.sum(&errors) {
+            let (sum, before) = (clearer.sum(&now), clearer.sum(&errors));
+            if !(sum.is_finite() && sum <= allowed * before) {
                 break;
             }
             (taken, errors, allowed) = (clearer, now, ANY);
@@ -61,12 +63,14 @@ impl Pushed {
         each.filter_map(|(error, _)| *error).sum()
     }
 
-    /// Mean of e²/D of some rows of each stretch, contradicted or not, predicted by other movements; none of those that have no rows.
+    /// E of (S44) of each stretch, contradicted or not; none of those that have no rows.
     fn errors(&self, rows: &Rows) -> Vec<Option<f64>> {
         let Pushed { outcome: Outcome { data, taken, .. }, kept, stretches, .. } = self;
-        let Some(some) = stretches.of_each(rows, kept, EACH) else { return vec![None; stretches.all.len()] };
+        let Some(some) = stretches.of_any(rows, kept, (EACH * stretches.all.len()).min(ALL)) else {
+            return vec![None; stretches.all.len()];
+        };
         let actions = taken.model.actions(&some.states);
-        // Of rows that were not learnt from, the model knows no more.
+        // Those that were not learnt from are predicted as they are: most stretches then have none that was.
         let mut residuals: Vec<f64> = (0..some.rows.len())
             .map(|row| some.speeds[row] - some.velocities.column(row).dot(&actions.column(row)) / some.speeds[row])
             .collect();

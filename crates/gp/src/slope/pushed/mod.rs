@@ -30,11 +30,9 @@ pub(crate) fn pushed(gp: &SlopeGp, rows: &Rows, kept: &Kept, plain: &Outcome) ->
     if gp.push_test == PushTest::AssumeNone {
         return None;
     }
-    let recorded = recorded(gp, rows, kept, plain).map(|pushed| pushed.without_contradicted(rows));
+    let recorded = recorded(gp, rows, kept, plain);
     let (outcome, own) = recorded.as_ref().map_or((plain, kept), |of| (&of.outcome, &of.kept));
-    let in_task_space = in_task_space(gp, rows, (kept, own), outcome);
-    // Only then: what a few wrong stretches say tells that all of them are.
-    in_task_space.map(|pushed| pushed.without_contradicted(rows)).or(recorded)
+    in_task_space(gp, rows, (kept, own), outcome).or(recorded)
 }
 
 /// Rows of stretches in a task space for one row of samples, since every sample has several, those that set amplitudes, and inducing ones;
@@ -140,19 +138,21 @@ impl Pushed {
         expected(rows, &self.outcome, &self.kept) < expected(rows, samples, kept)
     }
 
-    /// The search on all rows of the stretches, where that pays; as it is otherwise.
+    /// The search on all rows of the stretches that are not contradicted, where that pays. Only once rows of stretches are taken: where many
+    /// are wrong, those that remain predict well, too.
     pub(crate) fn on_all_rows(self, rows: &Rows) -> Pushed {
-        let Pushed { outcome, kept, stretches, gp } = &self;
+        let taken = self.without_contradicted(rows);
+        let Pushed { outcome, kept, stretches, gp } = &taken;
         // Rows of one stretch share the error of their directions.
         if stretches.through.is_none() && kept.rows.len() >= OF_A_STRETCH * stretches.all.len() {
-            return self;
+            return taken;
         }
-        let of_samples = self.of_samples(rows);
+        let of_samples = taken.of_samples(rows);
         let at_most = |most| stretches.more_rows(&of_samples, kept, most);
         let more = More { at_most: &at_most, noisy: rows.variances().is_some() };
         match on_all_rows(gp, more, kept, outcome) {
-            Some(OnAllRows { kept, outcome }) => Pushed { outcome, kept, ..self },
-            None => self,
+            Some(OnAllRows { kept, outcome }) => Pushed { outcome, kept, ..taken },
+            None => taken,
         }
     }
 
@@ -171,10 +171,7 @@ impl Pushed {
         };
         let all = share(&data.groups.concat());
         let own = self.kept.trajectories();
-        let place = |trajectory: &usize| own.iter().position(|of| of == trajectory);
-        trajectories
-            .iter()
-            .map(|trajectory| place(trajectory).map_or(all, |group| share(&data.groups[group])))
-            .collect()
+        let of = |trajectory: &usize| own.binary_search(trajectory).map_or(all, |group| share(&data.groups[group]));
+        trajectories.iter().map(of).collect()
     }
 }
