@@ -122,14 +122,9 @@ pub(crate) fn as_requested(demonstrations: &Demonstrations, agreement: Agreement
     if agreement == Agreement::Own { of_recorded(demonstrations) } else { VelocitySource::Recorded }
 }
 
-/// The noise of recorded velocities, if that is more than negligible.
-fn counting(demonstrations: &Demonstrations) -> Option<VelocityNoise> {
-    VelocityNoise::of(demonstrations).filter(|noise| !noise.is_negligible())
-}
-
 /// Recorded velocities, with their noise if that is more than negligible.
 pub(crate) fn of_recorded(demonstrations: &Demonstrations) -> VelocitySource {
-    match counting(demonstrations) {
+    match VelocityNoise::of(demonstrations).filter(|noise| !noise.is_negligible()) {
         Some(noise) => VelocitySource::Noisy(noise.variance / demonstrations.dim() as f64),
         None => VelocitySource::Recorded,
     }

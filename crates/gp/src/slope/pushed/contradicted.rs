@@ -5,7 +5,7 @@ use motion::upper_median;
 use crate::Rows;
 use crate::rows::kept::positions;
 use crate::slope::pushed::Pushed;
-use crate::slope::search::{Outcome, outcome, outcome_of_nearly_best};
+use crate::slope::search::Outcome;
 
 /// Error of a stretch, in that of the median, above which it is contradicted.
 const TIMES: f64 = 25.0;
@@ -48,13 +48,11 @@ impl Pushed {
         if same {
             return None;
         }
-        let kept = stretches.rows(rows, kept, &gp.selection().ok()?)?;
         // In a task space rows are many, and of a few models already.
-        let outcome = match stretches.through {
-            Some(_) => outcome_of_nearly_best(gp, &kept, &self.outcome),
-            None => outcome(gp, &kept),
-        };
-        Some(Pushed { outcome: outcome.ok()?, kept, stretches, gp: gp.clone() })
+        match stretches.through {
+            Some(_) => self.of_nearly_best(gp, rows, kept, stretches),
+            None => Pushed::search(gp, rows, kept, stretches),
+        }
     }
 
     /// Of the stretches that are not contradicted.

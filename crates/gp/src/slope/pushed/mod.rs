@@ -84,9 +84,7 @@ fn in_task_space(gp: &SlopeGp, rows: &Rows, (kept, own): (&Kept, &Kept), outcome
     let least = tried.first()?.0;
     let finalists = tried.into_iter().take(FINALISTS).take_while(|(error, _)| *error <= NEARLY * least);
     let finals = finalists.filter_map(|(_, fewer)| {
-        let kept = fewer.stretches.rows(&means, kept, &larger.selection().ok()?)?;
-        let outcome = outcome_of_nearly_best(&larger, &kept, &fewer.outcome).ok()?;
-        let pushed = Pushed { outcome, kept, gp: larger.clone(), ..fewer };
+        let pushed = fewer.of_nearly_best(&larger, &means, kept, fewer.stretches.clone())?;
         Some((expected(rows, &pushed.outcome, &pushed.kept), pushed))
     });
     let best = finals.min_by(|(a, _), (b, _)| a.total_cmp(b));
@@ -121,6 +119,13 @@ impl Pushed {
     fn search(gp: &SlopeGp, rows: &Rows, kept: &Kept, stretches: Stretches) -> Option<Pushed> {
         let kept = stretches.rows(rows, kept, &gp.selection().ok()?)?;
         Some(Pushed { outcome: outcome(gp, &kept).ok()?, kept, stretches, gp: gp.clone() })
+    }
+
+    /// The same on other rows, of the models alone that nearly were the best ones here.
+    fn of_nearly_best(&self, gp: &SlopeGp, rows: &Rows, kept: &Kept, stretches: Stretches) -> Option<Pushed> {
+        let kept = stretches.rows(rows, kept, &gp.selection().ok()?)?;
+        let outcome = outcome_of_nearly_best(gp, &kept, &self.outcome).ok()?;
+        Some(Pushed { outcome, kept, stretches, gp: gp.clone() })
     }
 
     /// The samples that rows of the stretches are of: in a task space perhaps means.
