@@ -17,10 +17,11 @@ use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 use crate::rows::task_space::TaskSpace;
+use crate::stretches::cut::MOST_SAMPLES;
 use crate::stretches::noise::velocity_noise;
 use crate::stretches::partition::{Part, SPARE, cheapest_parts, known_part};
 use crate::stretches::segmentation::PARAMETER;
-use crate::stretches::{MOST_DIMENSIONS, MOST_SAMPLES, centred, evenly, parts};
+use crate::stretches::{MOST_DIMENSIONS, centred, evenly, parts};
 use crate::{GpError, Rows};
 use hypothesis::{Hypothesis, Movement};
 use spaces::rarity;

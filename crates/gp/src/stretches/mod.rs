@@ -4,6 +4,7 @@
 //! the null space of A. Every direction v in which they lie gives a linear equation vᵀπ(x_i) = vᵀu_i for all samples of the
 //! stretch: rows like those of (S1), but free of the push.
 
+pub(crate) mod cut;
 pub(crate) mod noise;
 pub(crate) mod partition;
 pub(crate) mod rows;
@@ -18,13 +19,12 @@ use nalgebra::{DMatrix, DVector, Dyn, SVD};
 use rayon::prelude::*;
 
 use crate::Rows;
+use cut::Cut;
 use noise::velocity_noise;
-use segmentation::{Segment, known_segment, segments};
+use segmentation::Segment;
 use view::{Through, View};
 use whole::{least_length, whole};
 
-/// Most samples of a movement among which switches are looked for; of longer ones, evenly many.
-pub(crate) const MOST_SAMPLES: usize = 60;
 /// Most dimensions; the search takes time with the cube of them.
 pub(crate) const MOST_DIMENSIONS: usize = 12;
 /// Standard deviations of the noise that a direction must stand out by, for a stretch of one sample.
@@ -49,8 +49,8 @@ pub(crate) struct Stretch {
     rank: usize,
     /// The same, of a whole movement.
     whole: Option<usize>,
-    /// Whether other movements say otherwise (S44): rows are not taken from it.
-    pub(crate) contradicted: bool,
+    /// Noise of its rows in that of others (S44): above 1 if other movements contradict it.
+    pub(crate) doubt: f64,
 }
 
 /// Whether constraints may switch within a movement.
@@ -85,35 +85,28 @@ impl Stretches {
         let at: Vec<usize> = (0..rows.len()).collect();
         let parts = parts(rows, &at);
         let noise = velocity_noise(&view.velocities, rows.variances(), &parts)?;
-        let of_part = |part: &&[usize]| {
-            let of_segment = |few: &[usize], segment: &Segment| {
+        let cuts = Cut::each(rows, view, &parts, (switches, noise));
+        let switching = Cut::switches(&cuts);
+        let of_part = |(part, Cut { few, found, .. }): (&&[usize], &Cut)| {
+            let of_segment = |segment: &Segment| {
                 let span = few[segment.begin]..=few[segment.end - 1];
                 let inside: Vec<usize> = part.iter().copied().filter(|row| span.contains(row)).collect();
                 let least = STANDS_OUT * noise.sqrt() * (inside.len() as f64).powf(0.25);
                 stretch(rows, view, &inside, (segment.kind, least), noise)
             };
-            let velocities = view.velocities.select_columns(*part);
-            if rows.labels().is_some() {
-                let known = known_segment(&velocities, noise);
-                return known.iter().filter_map(|segment| of_segment(part, segment)).collect::<Vec<_>>();
-            }
-            let few = evenly(part, MOST_SAMPLES);
-            let (found, most) = match switches {
-                Switches::Sought => {
-                    let found = segments(&view.velocities.select_columns(&few), noise);
-                    let most = found.iter().map(|segment| segment.kind).max().unwrap_or(0);
-                    (found, most)
-                }
-                Switches::None => (Vec::new(), view.dim() - 1),
+            let most = match switches {
+                Switches::Sought => found.iter().map(|segment| segment.kind).max().unwrap_or(0),
+                Switches::None => view.dim() - 1,
             };
-            let (_, about_mean) = centred(&velocities);
-            if let Some(rank) = whole(&about_mean, most, noise) {
+            let (_, about_mean) = centred(&view.velocities.select_columns(*part));
+            let one = rows.labels().is_none() && (found.len() < 2 || !switching);
+            if let Some(rank) = whole(&about_mean, most, noise).filter(|_| one) {
                 let found = stretch(rows, view, part, (rank, least_length(part.len(), noise)), noise);
-                return found.map(|found| Stretch { whole: Some(rank), ..found }).into_iter().collect();
+                return found.map(|found| Stretch { whole: Some(rank), ..found }).into_iter().collect::<Vec<_>>();
             }
-            found.iter().filter_map(|segment| of_segment(&few, segment)).collect()
+            found.iter().filter_map(of_segment).collect()
         };
-        let stretches: Vec<Stretch> = parts.par_iter().flat_map_iter(of_part).collect();
+        let stretches: Vec<Stretch> = parts.par_iter().zip(&cuts).flat_map_iter(of_part).collect();
         let through = view.through.clone();
         (!stretches.is_empty()).then_some(Stretches { all: stretches, noise, pushed: true, through })
     }
@@ -153,6 +146,10 @@ impl Stretches {
 }
 
 impl Stretch {
+    pub(crate) fn is_contradicted(&self) -> bool {
+        self.doubt > 1.0
+    }
+
     pub(crate) fn holds(&self, index: SampleIndex) -> bool {
         index.trajectory == self.trajectory && (self.samples.0..=self.samples.1).contains(&index.sample)
     }
@@ -229,7 +226,7 @@ fn stretch(rows: &Rows, view: &View<'_>, inside: &[usize], (rank, least): (usize
         lengths: span.lengths,
         directions: span.directions,
         whole: None,
-        contradicted: false,
+        doubt: 1.0,
     })
 }
 

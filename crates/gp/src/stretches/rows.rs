@@ -19,8 +19,8 @@ const LEAST: f64 = 1e-12;
 const LEAST_SIGNIFICANCE: f64 = 4.0;
 /// Largest square of one push that counts, for each of its normals: a straight movement looks pushed, and one alone must not tell.
 const MOST_OF_ONE: f64 = 40.0;
-/// Share of the movements that must have stretches: models of different movements are not compared.
-const COVERED: f64 = 0.5;
+/// Movements that must have stretches.
+const LEAST_MOVEMENTS: usize = 3;
 
 /// One equation vᵀπ(x) = vᵀu.
 struct Equation<'a> {
@@ -34,8 +34,8 @@ struct Equation<'a> {
     noise: f64,
     /// ℓ_k of its direction.
     direction_length: f64,
-    /// Whether its stretch is.
-    contradicted: bool,
+    /// That of its stretch.
+    doubt: f64,
 }
 
 /// At most `most` of the equations that these rows give, by their places.
@@ -46,8 +46,8 @@ fn few(of_rows: &[usize], rows: &Rows, most: usize) -> Vec<usize> {
 }
 
 impl Stretches {
-    /// Rows of all samples that lie in stretches, but for contradicted ones, with their noise weights (S23); evenly many of them, where they are more
-    /// than `selection` allows. None if they are of far fewer movements than `kept` ones.
+    /// Rows of all samples that lie in stretches, with their noise weights (S23), (S44); evenly many of them, where they are more
+    /// than `selection` allows. None if they are of too few movements.
     ///
     /// In a task space there are several for each sample, whose directions do not depend on the velocity: `rows` may be means (S33) there.
     pub(crate) fn rows(&self, rows: &Rows, kept: &Kept, selection: &Selection) -> Option<Kept> {
@@ -57,10 +57,10 @@ impl Stretches {
         Some(Kept { hyper, ..found })
     }
 
-    /// `some`, rows of these stretches, and about `most` of all stretches, contradicted or not, without hyper rows.
+    /// `some`, rows of these stretches, and about `most` of them, as if none were contradicted, without hyper rows.
     pub(crate) fn of_any(&self, rows: &Rows, some: &Kept, most: usize) -> Option<Kept> {
         let mut all = self.clone();
-        all.all.iter_mut().for_each(|stretch| stretch.contradicted = false);
+        all.all.iter_mut().for_each(|stretch| stretch.doubt = 1.0);
         all.rows_with(rows, some, most, &some.rows)
     }
 
@@ -84,9 +84,8 @@ impl Stretches {
         });
         let mean_square = sum / count as f64;
         let moving = || all().filter(|equation| equation.part.powi(2) > LEAST * mean_square);
-        let usable = moving().enumerate().filter(|(_, equation)| !equation.contradicted);
-        let (places, of_rows): (Vec<usize>, Vec<usize>) = usable.map(|(at, equation)| (at, equation.row)).unzip();
-        let mut taken: BTreeSet<usize> = few(&of_rows, rows, most).into_iter().map(|at| places[at]).collect();
+        let of_rows: Vec<usize> = moving().map(|equation| equation.row).collect();
+        let mut taken: BTreeSet<usize> = few(&of_rows, rows, most).into_iter().collect();
         taken.extend(also);
         let found = of_rows.len();
         let samples = of_rows.chunk_by(|a, b| a == b).count();
@@ -94,15 +93,13 @@ impl Stretches {
         let equations: Vec<Equation<'_>> = chosen.map(|(_, equation)| equation).collect();
         let lengths: Vec<f64> = equations.iter().map(|of| of.part.abs()).collect();
         let policy_squared = 2.0 * upper_median(lengths.clone())?.powi(2);
-        let variance = |of: &Equation<'_>| self.noise * (of.noise + policy_squared / of.direction_length.powi(2));
+        let variance =
+            |of: &Equation<'_>| of.doubt * self.noise * (of.noise + policy_squared / of.direction_length.powi(2));
         let all: Vec<usize> = (0..equations.len()).collect();
         let index = |at: usize| rows.indices()[equations[at].row];
         let same = |&a: &usize, &b: &usize| index(a).trajectory == index(b).trajectory;
         let groups: Vec<Vec<usize>> = all.chunk_by(same).map(<[usize]>::to_vec).collect();
-        // Further trajectories have no samples to look for stretches in.
-        let last = rows.indices().iter().map(|index| index.trajectory).max();
-        let at_hand = kept.trajectories().into_iter().filter(|&trajectory| Some(trajectory) <= last).count();
-        if groups.len() < 3 || (groups.len() as f64) < COVERED * at_hand as f64 {
+        if groups.len() < LEAST_MOVEMENTS {
             return None;
         }
         let columns: Vec<DVector<f64>> = equations.iter().map(|of| of.direction * of.part).collect();
@@ -123,9 +120,21 @@ impl Stretches {
             groups,
             hyper: Vec::new(),
             grouping: kept.grouping,
-            dropped: RowsDropped { thinned: found - equations.len(), ..RowsDropped::default() },
+            dropped: self.dropped(rows, found - equations.len()),
             rows: taken.into_iter().collect(),
         })
+    }
+
+    fn dropped(&self, rows: &Rows, thinned: usize) -> RowsDropped {
+        let of = |dropped: RowsDropped, &index: &SampleIndex| {
+            let stretch = self.at(index);
+            RowsDropped {
+                in_no_stretch: dropped.in_no_stretch + usize::from(stretch.is_none()),
+                contradicted: dropped.contradicted + usize::from(stretch.is_some_and(Stretch::is_contradicted)),
+                ..dropped
+            }
+        };
+        rows.indices().iter().fold(RowsDropped { thinned, ..RowsDropped::default() }, of)
     }
 
     /// The directions of (S41) of every sample.
@@ -152,10 +161,10 @@ impl Stretches {
             (Some(_), Some(variances)) => variances[row] / self.noise,
             _ => 1.0,
         };
-        let contradicted = self.at(rows.indices()[row]).is_some_and(|stretch| stretch.contradicted);
+        let doubt = self.at(rows.indices()[row]).map_or(1.0, |stretch| stretch.doubt);
         recorded.chain(free).map(move |(direction, direction_length)| {
             let part = direction.dot(&rows.velocities().column(row));
-            Equation { row, direction, part, noise, direction_length, contradicted }
+            Equation { row, direction, part, noise, direction_length, doubt }
         })
     }
 
@@ -181,7 +190,7 @@ impl Stretches {
 
     /// Those that are not contradicted.
     fn right(&self) -> impl Iterator<Item = &Stretch> {
-        self.all.iter().filter(|stretch| !stretch.contradicted)
+        self.all.iter().filter(|stretch| !stretch.is_contradicted())
     }
 
     /// (S24).
@@ -224,7 +233,7 @@ mod tests {
             significance: (square, normals),
             rank: 3 - normals,
             whole: None,
-            contradicted: false,
+            doubt: 1.0,
         }
     }
 

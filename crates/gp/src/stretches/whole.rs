@@ -8,6 +8,8 @@ use crate::stretches::partition::SPARE;
 const ANGLE: f64 = 0.25;
 /// By how many standard deviations of χ² the velocities may leave the plane.
 const LEAVES: f64 = 3.0;
+/// Samples before and after a place that show whether velocities jump there.
+const NEAR: usize = 8;
 
 /// The least rank of a plane that through 0 that holds all velocities, (n, N), of a movement up to noise, but no more than `most`, the largest of its
 /// segments, or 1; none if there is no such plane. A plane of more dimensions would hold two stretches of fewer.
@@ -22,6 +24,25 @@ pub(super) fn whole(velocities: &DMatrix<f64>, most: usize, noise: f64) -> Optio
     };
     // In one dimension there is no plane.
     (1..=most.max(1).min(dim - 1)).filter(|rank| count >= rank + SPARE).find(|&rank| outside(rank) <= allowed(rank))
+}
+
+/// Whether velocities, (n, N), change at once: somewhere the squares that two lines in time leave, one of the samples before and one of those
+/// after, are less than half of what a cubic leaves, which has as many coefficients and leaves more than noise.
+pub(super) fn jumps(velocities: &DMatrix<f64>, noise: f64) -> bool {
+    let polynomials = |count: usize, coefficients: usize| {
+        let time = |at: usize| 2.0 * at as f64 / (count - 1) as f64 - 1.0;
+        DMatrix::from_fn(count, coefficients, |at, power| time(at).powf(power as f64)).qr().q()
+    };
+    let (line, cubic) = (polynomials(NEAR, 2), polynomials(2 * NEAR, 4));
+    let left = |begin: usize, basis: &DMatrix<f64>| {
+        let some = velocities.columns(begin, basis.nrows());
+        (some - some * basis * basis.transpose()).norm_squared()
+    };
+    let least = noise * (2 * NEAR * velocities.nrows()) as f64;
+    (0..(velocities.ncols() + 1).saturating_sub(2 * NEAR)).any(|at| {
+        let of_cubic = left(at, &cubic);
+        of_cubic > least && 2.0 * (left(at, &line) + left(at + NEAR, &line)) < of_cubic
+    })
 }
 
 /// The least singular value of `count` velocities along a direction whose angle is certain enough: s√N of it is noise.
@@ -70,6 +91,29 @@ mod tests {
             }
             prop_assert_eq!(whole(&both, 1, 1e-4), None);
             prop_assert_eq!(whole(&both.rows(0, 2).into_owned(), 1, 1e-4), None);
+        }
+
+        /// A jump of ten standard deviations among noise is one; none is where velocities decay or turn.
+        #[test]
+        fn a_jump_is_one(
+            dim in 1usize..4,
+            at in 20usize..60,
+            factor in 0.3f64..0.99,
+            turn in 20.0f64..100.0,
+            deviation in 1e-4f64..1e-2,
+            seed in any::<u64>(),
+        ) {
+            let mut rng = ChaCha8Rng::seed_from_u64(seed);
+            let noise = DMatrix::from_fn(dim, 80, |_, _| deviation * 3.0_f64.sqrt() * (2.0 * rng.random::<f64>() - 1.0));
+            let smooth = DMatrix::from_fn(dim, 80, |axis, sample| {
+                let time = (sample + axis) as f64;
+                factor.powf(time) + (std::f64::consts::TAU * time / turn).sin()
+            });
+            let moving = &smooth + &noise;
+            prop_assert!(!jumps(&moving, deviation.powi(2)));
+            let step = DMatrix::from_fn(dim, 80, |axis, sample| if axis == 0 && sample >= at { 10.0 * deviation } else { 0.0 });
+            prop_assert!(jumps(&(&noise + step), deviation.powi(2)));
+            prop_assert!(!jumps(&noise, deviation.powi(2)));
         }
 
         /// (S23): at the least length the angle's standard deviation s/ℓ is the largest allowed.

@@ -20,6 +20,8 @@ pub(crate) struct System {
     span: f64,
     /// Rows of A.
     rank: usize,
+    /// Whether constraints are new once within each movement.
+    switches: bool,
     potential: fn(&[f64]) -> f64,
 }
 
@@ -61,16 +63,21 @@ fn uneven_wells(x: &[f64]) -> f64 {
     bowl + drawn::WELLS.iter().map(well).sum::<f64>()
 }
 
-pub(crate) const HIMMELBLAU: System = System { dim: 2, span: 4.0, rank: 1, potential: himmelblau };
-pub(crate) const ANGLES: System = System { dim: 3, span: 2.0, rank: 1, potential: angles };
-pub(crate) const WELLS: System = System { dim: 6, span: 1.0, rank: 2, potential: wells };
-pub(crate) const CHAIN: System = System { dim: 4, span: 1.5, rank: 1, potential: chain };
-pub(crate) const UNEVEN_WELLS: System = System { dim: 5, span: 1.2, rank: 2, potential: uneven_wells };
+pub(crate) const HIMMELBLAU: System = System { dim: 2, span: 4.0, rank: 1, switches: true, potential: himmelblau };
+pub(crate) const ANGLES: System = System { dim: 3, span: 2.0, rank: 1, switches: true, potential: angles };
+pub(crate) const WELLS: System = System { dim: 6, span: 1.0, rank: 2, switches: true, potential: wells };
+pub(crate) const CHAIN: System = System { dim: 4, span: 1.5, rank: 1, switches: true, potential: chain };
+pub(crate) const UNEVEN_WELLS: System = System { dim: 5, span: 1.2, rank: 2, switches: true, potential: uneven_wells };
 
 impl System {
     /// The same potential, without constraints.
     pub(crate) fn free(self) -> System {
         System { rank: 0, ..self }
+    }
+
+    /// The same potential under constraints that hold for a whole movement.
+    pub(crate) fn without_switches(self) -> System {
+        System { switches: false, ..self }
     }
 
     /// −∇φ by central differences of order four.
@@ -130,7 +137,7 @@ impl System {
             let switch = samples / 4 + (0.5 * samples as f64 * rng.random::<f64>()) as usize;
             let (mut states, mut velocities, mut bases) = (Vec::new(), Vec::new(), Vec::new());
             for sample in 0..samples {
-                if self.rank > 0 && (sample == 0 || sample == switch) {
+                if self.rank > 0 && (sample == 0 || self.switches && sample == switch) {
                     let draw = DMatrix::from_fn(self.dim, self.rank, |_, _| normal(&mut rng));
                     let basis = draw.qr().q();
                     let b = DVector::from_fn(self.rank, |_, _| normal(&mut rng)).normalize() * push * rms;
@@ -151,11 +158,15 @@ impl System {
 
 /// What is learnt of 400 rows, where constraints may push.
 pub(crate) fn learnt(rows: &Rows, seed: u64) -> AutoFit {
-    let learner = AutoGp {
-        slope: SlopeGp { max_rows: 400, hyper_rows: 200, push_test: PushTest::Fit, ..SlopeGp::default() },
-        direct: DirectGp { max_rows: 400, hyper_rows: 200, ..DirectGp::default() },
-        ..AutoGp::default()
-    };
+    learnt_with(0, rows, seed)
+}
+
+/// What is learnt of 400 rows, or of more through so many inducing rows; the program has 500.
+pub(crate) fn learnt_with(inducing_rows: usize, rows: &Rows, seed: u64) -> AutoFit {
+    let (max_rows, hyper_rows) = (400, 200);
+    let slope = SlopeGp { max_rows, hyper_rows, inducing_rows, push_test: PushTest::Fit, ..SlopeGp::default() };
+    let direct = DirectGp { max_rows, hyper_rows, ..DirectGp::default() };
+    let learner = AutoGp { slope, direct, ..AutoGp::default() };
     learner.fit(rows, &mut ChaCha8Rng::seed_from_u64(seed)).unwrap()
 }
 

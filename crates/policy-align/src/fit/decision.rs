@@ -15,7 +15,7 @@ pub(super) fn decision(what: &str, value: impl Into<String>, why: impl Into<Stri
 /// What was made of samples before a Gaussian process learnt from them; none if each is a row.
 pub(super) fn rows_decision(readings: &AutoFit) -> Option<Decision> {
     let gp::TrustReport { rows, inducing, rows_dropped, task_space, .. } = readings.slope().report();
-    let RowsDropped { averaged, thinned, still, noisy } = *rows_dropped;
+    let RowsDropped { averaged, thinned, still, noisy, in_no_stretch, contradicted } = *rows_dropped;
     let found = rows + still + noisy + thinned;
     let mut why = Vec::new();
     if averaged > 0 {
@@ -26,6 +26,12 @@ pub(super) fn rows_decision(readings: &AutoFit) -> Option<Decision> {
         // In a task space a sample has several equations.
         let others = if task_space.is_some() { "other equations" } else { "others" };
         why.push(format!("{thinned} {others}, evenly spread, are not learnt from"));
+    }
+    if in_no_stretch > 0 {
+        why.push(format!("{in_no_stretch} samples are in no stretch of one constraint"));
+    }
+    if contradicted > 0 {
+        why.push(format!("{contradicted} samples in stretches that other movements contradict count less"));
     }
     let flag = if thinned == 0 && inducing.is_none() { "--max-rows" } else { "--inducing" };
     (!why.is_empty()).then(|| decision("rows", rows.to_string(), why.join("; "), flag))

@@ -9,9 +9,6 @@ use crate::slope::search::Outcome;
 
 /// Error of a stretch, in that of the median, above which it is contradicted.
 const TIMES: f64 = 25.0;
-/// Error of the other stretches, in that before, up to which a model without contradicted ones is taken at first, and once one was.
-const CLEARLY: f64 = 0.7;
-const ANY: f64 = 1.0;
 /// How often they are looked for: a better model shows more of them, and that some are none.
 const ROUNDS: usize = 4;
 /// Rows of each stretch that are compared, on average, and of all.
@@ -19,33 +16,35 @@ const EACH: usize = 4;
 const ALL: usize = 20_000;
 
 impl Pushed {
-    /// The search without the stretches that other movements contradict, if that predicts the others clearly better.
-    pub(super) fn without_contradicted(self, rows: &Rows) -> Pushed {
+    /// The search in which stretches that other movements contradict are as noisy as their errors, if that predicts the others no worse. They
+    /// still tell something where no other movement was.
+    pub(super) fn with_contradicted(self, rows: &Rows) -> Pushed {
         let rows = &*self.of_samples(rows);
         let mut errors = self.errors(rows);
-        let (mut taken, mut allowed) = (self, CLEARLY);
+        let mut taken = self;
         for _ in 0..ROUNDS {
-            let Some(clearer) = taken.without_largest(rows, &errors) else { break };
+            let Some(clearer) = taken.with_doubts(rows, &errors) else { break };
             let now = clearer.errors(rows);
             let (sum, before) = (clearer.sum(&now), clearer.sum(&errors));
-            if !(sum.is_finite() && sum <= allowed * before) {
+            if !(sum.is_finite() && sum <= before) {
                 break;
             }
-            (taken, errors, allowed) = (clearer, now, ANY);
+            (taken, errors) = (clearer, now);
         }
         taken
     }
 
-    /// The search without stretches of the largest errors; none if they are those that it is without already.
-    fn without_largest(&self, rows: &Rows, errors: &[Option<f64>]) -> Option<Pushed> {
+    /// The search in which stretches of the largest errors are as noisy; none if they are those that are already.
+    fn with_doubts(&self, rows: &Rows, errors: &[Option<f64>]) -> Option<Pushed> {
         let Pushed { kept, gp, .. } = self;
-        let most = TIMES * upper_median(errors.iter().copied().flatten().collect())?;
+        let median = upper_median(errors.iter().copied().flatten().collect())?;
         let mut stretches = self.stretches.clone();
         for (stretch, error) in stretches.all.iter_mut().zip(errors) {
-            stretch.contradicted = error.is_some_and(|error| error > most);
+            let doubt = error.map_or(1.0, |error| error / median);
+            stretch.doubt = if doubt > TIMES { doubt } else { 1.0 };
         }
-        let same = stretches.all.iter().zip(&self.stretches.all).all(|(a, b)| a.contradicted == b.contradicted);
-        if same {
+        let both = stretches.all.iter().zip(&self.stretches.all);
+        if both.into_iter().all(|(a, b)| a.is_contradicted() == b.is_contradicted()) {
             return None;
         }
         // In a task space rows are many, and of a few models already.
@@ -57,7 +56,7 @@ impl Pushed {
 
     /// Of the stretches that are not contradicted.
     fn sum(&self, errors: &[Option<f64>]) -> f64 {
-        let each = errors.iter().zip(&self.stretches.all).filter(|(_, stretch)| !stretch.contradicted);
+        let each = errors.iter().zip(&self.stretches.all).filter(|(_, stretch)| !stretch.is_contradicted());
         each.filter_map(|(error, _)| *error).sum()
     }
 

@@ -53,7 +53,7 @@ fn in_task_space(gp: &SlopeGp, rows: &Rows, (kept, own): (&Kept, &Kept), outcome
     if rows.task_spaces().is_empty() || rows.momenta().is_some() {
         return None;
     }
-    let before = expected(rows, outcome, own);
+    let before = expected(rows, outcome, own, kept);
     if before <= NEARLY_EXACT {
         return None;
     }
@@ -69,7 +69,7 @@ fn in_task_space(gp: &SlopeGp, rows: &Rows, (kept, own): (&Kept, &Kept), outcome
     let means = rows.averaged();
     let tried = found.filter_map(|found| {
         let tried = Pushed::search(gp, &means, kept, found)?;
-        Some((expected(rows, &tried.outcome, &tried.kept), tried))
+        Some((expected(rows, &tried.outcome, &tried.kept, kept), tried))
     });
     let mut tried: Vec<(f64, Pushed)> = tried.collect();
     tried.sort_by(|(a, _), (b, _)| a.total_cmp(b));
@@ -85,15 +85,26 @@ fn in_task_space(gp: &SlopeGp, rows: &Rows, (kept, own): (&Kept, &Kept), outcome
     let finalists = tried.into_iter().take(FINALISTS).take_while(|(error, _)| *error <= NEARLY * least);
     let finals = finalists.filter_map(|(_, fewer)| {
         let pushed = fewer.of_nearly_best(&larger, &means, kept, fewer.stretches.clone())?;
-        Some((expected(rows, &pushed.outcome, &pushed.kept), pushed))
+        Some((expected(rows, &pushed.outcome, &pushed.kept, kept), pushed))
     });
     let best = finals.min_by(|(a, _), (b, _)| a.total_cmp(b));
     best.filter(|(error, _)| *error < before).map(|(_, pushed)| pushed)
 }
 
-/// (S19): R² of slow rows that are certain is not that of fast ones alone.
-fn expected(rows: &Rows, outcome: &Outcome, kept: &Kept) -> f64 {
-    report(&ReportInput { outcome, kept, rows, across: CrossPathEvidence::Tested }).expected_nupe
+/// (S19) of `own` rows, for R² of slow rows that are certain is not that of fast ones alone: on all movements, as if nothing were
+/// known of those that have none.
+fn expected(rows: &Rows, outcome: &Outcome, own: &Kept, samples: &Kept) -> f64 {
+    let report = report(&ReportInput { outcome, kept: own, rows, across: CrossPathEvidence::Tested });
+    report.expected_nupe / covered(rows, own, samples)
+}
+
+/// Share of the movements of `samples` that have `own` rows: fewer movements have to predict so much better.
+fn covered(rows: &Rows, own: &Kept, samples: &Kept) -> f64 {
+    // Further trajectories have no samples to look for stretches in.
+    let last = rows.indices().iter().map(|index| index.trajectory).max();
+    let count =
+        |kept: &Kept| kept.trajectories().into_iter().filter(|&trajectory| Some(trajectory) <= last).count() as f64;
+    (count(own) / count(samples)).min(1.0)
 }
 
 /// Of stretches in the recorded coordinates. Not tried where `plain` predicts nearly exactly. Where nothing pushes, only noise of the
@@ -107,8 +118,8 @@ fn recorded(gp: &SlopeGp, rows: &Rows, kept: &Kept, plain: &Outcome) -> Option<P
     let stretches = Stretches::of(rows, &view, Switches::Sought)?;
     if stretches.push_is_significant() {
         let pushed = if settled { None } else { Pushed::search(gp, rows, kept, stretches) }?;
-        let r_squared = |outcome: &Outcome| outcome.taken.left_out.r_squared;
-        return (r_squared(&pushed.outcome) > r_squared(plain)).then_some(pushed);
+        let left = |outcome: &Outcome| 1.0 - outcome.taken.left_out.r_squared;
+        return (left(&pushed.outcome) < covered(rows, &pushed.kept, kept) * left(plain)).then_some(pushed);
     }
     rows.variances()?;
     let pushed = Pushed::search(gp, rows, kept, stretches.without_push(rows, &view))?;
@@ -140,13 +151,13 @@ impl Pushed {
 
     /// Whether this expects less than a search on rows of samples.
     pub(crate) fn expects_less(&self, rows: &Rows, samples: &Outcome, kept: &Kept) -> bool {
-        expected(rows, &self.outcome, &self.kept) < expected(rows, samples, kept)
+        expected(rows, &self.outcome, &self.kept, kept) < expected(rows, samples, kept, kept)
     }
 
-    /// The search on all rows of the stretches that are not contradicted, where that pays. Only once rows of stretches are taken: where many
-    /// are wrong, those that remain predict well, too.
+    /// The search on all rows of the stretches, where that pays, with doubts about those that other movements contradict. Only once rows of
+    /// stretches are taken: where many are wrong, the others predict well, too.
     pub(crate) fn on_all_rows(self, rows: &Rows) -> Pushed {
-        let taken = self.without_contradicted(rows);
+        let taken = self.with_contradicted(rows);
         let Pushed { outcome, kept, stretches, gp } = &taken;
         // Rows of one stretch share the error of their directions.
         if stretches.through.is_none() && kept.rows.len() >= OF_A_STRETCH * stretches.all.len() {

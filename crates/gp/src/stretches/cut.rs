@@ -1,0 +1,53 @@
+//! Where movements are cut, and whether constraints switch within movements.
+
+use rayon::prelude::*;
+
+use crate::Rows;
+use crate::stretches::segmentation::{Segment, known_segment, segments};
+use crate::stretches::view::View;
+use crate::stretches::whole::jumps;
+use crate::stretches::{Switches, evenly};
+
+/// Most samples of a movement among which switches are looked for; of longer ones, evenly many.
+pub(crate) const MOST_SAMPLES: usize = 60;
+/// Share of the movements whose velocities jump above which constraints switch within movements.
+const SWITCHING: f64 = 0.1;
+
+/// The segments of one movement.
+pub(super) struct Cut {
+    /// The rows among which its segments are.
+    pub(super) few: Vec<usize>,
+    pub(super) found: Vec<Segment>,
+    /// Whether there are several, and velocities jump.
+    jumps: bool,
+}
+
+impl Cut {
+    /// Of each part of the movements. `noise` is the variance of a velocity along an axis.
+    pub(super) fn each(
+        rows: &Rows,
+        view: &View<'_>,
+        parts: &[&[usize]],
+        (switches, noise): (Switches, f64),
+    ) -> Vec<Cut> {
+        let of = |part: &&[usize]| {
+            let known = rows.labels().is_some();
+            let few = if known { part.to_vec() } else { evenly(part, MOST_SAMPLES) };
+            let velocities = view.velocities.select_columns(&few);
+            let found = match switches {
+                _ if known => known_segment(&velocities, noise).into_iter().collect(),
+                Switches::Sought => segments(&velocities, noise),
+                Switches::None => Vec::new(),
+            };
+            let jumps = found.len() > 1 && jumps(&view.velocities.select_columns(*part), noise);
+            Cut { few, found, jumps }
+        };
+        parts.par_iter().map(of).collect()
+    }
+
+    /// Whether constraints switch within so many movements that several segments of one are several stretches. Otherwise they are one that
+    /// comes to rest.
+    pub(super) fn switches(cuts: &[Cut]) -> bool {
+        cuts.iter().filter(|cut| cut.jumps).count() as f64 > SWITCHING * cuts.len() as f64
+    }
+}
