@@ -43,10 +43,10 @@ pub struct RowsDropped {
     pub noisy: usize,
     /// Beyond `max_rows`: kept are the first of every movement, and of the others evenly many of every stretch of time.
     pub thinned: usize,
-    /// Where rows are of stretches of one constraint each: samples that are in none,
+    /// Where rows are of stretches of one constraint each: samples, or means of them, that are in none,
     #[serde(default, skip_serializing_if = "none")]
     pub in_no_stretch: usize,
-    /// and samples in stretches that other movements contradict (S44).
+    /// and those in stretches that other movements contradict, which count less (S44).
     #[serde(default, skip_serializing_if = "none")]
     pub contradicted: usize,
 }

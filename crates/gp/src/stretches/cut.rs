@@ -10,6 +10,8 @@ use crate::stretches::{Switches, evenly};
 
 /// Most samples of a movement among which switches are looked for; of longer ones, evenly many.
 pub(crate) const MOST_SAMPLES: usize = 60;
+/// The same, among which jumps are looked for.
+const MOST_FOR_JUMPS: usize = 1000;
 /// Share of the movements whose velocities jump above which constraints switch within movements.
 const SWITCHING: f64 = 0.1;
 
@@ -39,7 +41,7 @@ impl Cut {
                 Switches::Sought => segments(&velocities, noise),
                 Switches::None => Vec::new(),
             };
-            let jumps = found.len() > 1 && jumps(&view.velocities.select_columns(*part), noise);
+            let jumps = found.len() > 1 && jumps(&view.velocities.select_columns(&evenly(part, MOST_FOR_JUMPS)), noise);
             Cut { few, found, jumps }
         };
         parts.par_iter().map(of).collect()

@@ -28,10 +28,10 @@ pub(super) fn rows_decision(readings: &AutoFit) -> Option<Decision> {
         why.push(format!("{thinned} {others}, evenly spread, are not learnt from"));
     }
     if in_no_stretch > 0 {
-        why.push(format!("{in_no_stretch} samples are in no stretch of one constraint"));
+        why.push(format!("{in_no_stretch} states are in no stretch of one constraint"));
     }
     if contradicted > 0 {
-        why.push(format!("{contradicted} samples in stretches that other movements contradict count less"));
+        why.push(format!("{contradicted} states in stretches that other movements contradict count less"));
     }
     let flag = if thinned == 0 && inducing.is_none() { "--max-rows" } else { "--inducing" };
     (!why.is_empty()).then(|| decision("rows", rows.to_string(), why.join("; "), flag))

@@ -9,6 +9,8 @@ use crate::slope::search::Outcome;
 
 /// Error of a stretch, in that of the median, above which it is contradicted.
 const TIMES: f64 = 25.0;
+/// Most noise of a stretch, in that of others: what overflows tells nothing.
+const MOST: f64 = 1e30;
 /// How often they are looked for: a better model shows more of them, and that some are none.
 const ROUNDS: usize = 4;
 /// Rows of each stretch that are compared, on average, and of all.
@@ -37,14 +39,14 @@ impl Pushed {
     /// The search in which stretches of the largest errors are as noisy; none if they are those that are already.
     fn with_doubts(&self, rows: &Rows, errors: &[Option<f64>]) -> Option<Pushed> {
         let Pushed { kept, gp, .. } = self;
-        let median = upper_median(errors.iter().copied().flatten().collect())?;
+        let median = upper_median(errors.iter().copied().flatten().collect()).filter(|&median| median > 0.0)?;
         let mut stretches = self.stretches.clone();
         for (stretch, error) in stretches.all.iter_mut().zip(errors) {
-            let doubt = error.map_or(1.0, |error| error / median);
+            let doubt = error.map_or(1.0, |error| (error / median).min(MOST));
             stretch.doubt = if doubt > TIMES { doubt } else { 1.0 };
         }
-        let both = stretches.all.iter().zip(&self.stretches.all);
-        if both.into_iter().all(|(a, b)| a.is_contradicted() == b.is_contradicted()) {
+        let mut both = stretches.all.iter().zip(&self.stretches.all);
+        if both.all(|(a, b)| a.is_contradicted() == b.is_contradicted()) {
             return None;
         }
         // In a task space rows are many, and of a few models already.
