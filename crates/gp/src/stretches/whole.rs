@@ -126,7 +126,7 @@ mod tests {
                 (0..40).filter(one).count()
             };
             prop_assert!(of_forty(&|_, _| 0.0) <= 4);
-            prop_assert!(of_forty(&|axis, sample| factor.powi((sample + axis) as i32)) <= 4);
+            prop_assert!(of_forty(&|axis, sample| factor.powf((sample + axis) as f64)) <= 4);
             prop_assert!(of_forty(&|axis, sample| (std::f64::consts::TAU * (sample + axis) as f64 / turn).sin()) <= 4);
             let step = |axis, sample| if axis == 0 && sample >= at { 20.0 * deviation } else { 0.0 };
             prop_assert!(of_forty(&step) >= 36);
