@@ -18,6 +18,7 @@ use crate::rows::kept::{Kept, Selection, rescaled, spreads};
 use crate::slope::data::SlopeData;
 use crate::slope::push_test::PushTest;
 use crate::slope::slope_gp::SlopeGp;
+use crate::stretches::rows::covered;
 use crate::stretches::view::View;
 use crate::stretches::{Stretches, Switches};
 use crate::{GpError, Rows};
@@ -35,6 +36,8 @@ const SAME: f64 = 0.05;
 
 /// Share of the left-out error in recorded units above which other units that stay are given up: half of it is needed.
 const HOPELESS: f64 = 0.75;
+/// Share of the movements that must have stretches: what they leave and what samples leave is compared as it is.
+const COVERED: f64 = 0.5;
 /// How many times the spread of an axis may be worth that of another.
 const MOST_WORTH: f64 = 100.0;
 
@@ -130,7 +133,7 @@ impl SlopeGp {
     }
 }
 
-/// Rows of stretches, found with every axis divided by its `spread`, in the recorded units; none where nothing pushes.
+/// Rows of stretches, found with every axis divided by its `spread`, in the recorded units; none where nothing pushes, or of few movements.
 fn stretches(rows: &Rows, kept: &Kept, selection: &Selection, spread: &DVector<f64>) -> Option<Kept> {
     let (dim, factors) = (rows.dim(), spread.map(f64::recip));
     let states = rescaled(rows.states(), &factors);
@@ -143,7 +146,8 @@ fn stretches(rows: &Rows, kept: &Kept, selection: &Selection, spread: &DVector<f
     };
     let stretches =
         Stretches::of(&alike, &View::recorded(&alike), Switches::Sought).filter(Stretches::push_is_significant)?;
-    Some(stretches.rows(&alike, kept, selection)?.scaled(spread))
+    let own = stretches.rows(&alike, kept, selection)?;
+    (covered(&alike, &own, kept) >= COVERED).then(|| own.scaled(spread))
 }
 
 /// Units in which these rows are predicted better than in the recorded ones; axes vary by `spread`.

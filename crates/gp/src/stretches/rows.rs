@@ -45,6 +45,15 @@ fn few(of_rows: &[usize], rows: &Rows, most: usize) -> Vec<usize> {
     thinned(all.chunk_by(|a, b| trajectory(a) == trajectory(b)), most, || MIDDLE)
 }
 
+/// Share of the movements of `samples` that have `own` rows, those of stretches: fewer movements have to predict so much better.
+pub(crate) fn covered(rows: &Rows, own: &Kept, samples: &Kept) -> f64 {
+    // Further trajectories have no samples to look for stretches in.
+    let last = rows.indices().iter().map(|index| index.trajectory).max();
+    let count =
+        |kept: &Kept| kept.trajectories().into_iter().filter(|&trajectory| Some(trajectory) <= last).count() as f64;
+    (count(own) / count(samples)).min(1.0)
+}
+
 impl Stretches {
     /// Rows of all samples that lie in stretches, with their noise weights (S23), (S44); evenly many of them, where they are more
     /// than `selection` allows. None if they are of too few movements.
@@ -153,7 +162,8 @@ impl Stretches {
         free: Option<&'a [Vec<Free>]>,
         row: usize,
     ) -> impl Iterator<Item = Equation<'a>> {
-        let recorded = if free.is_none() { self.at(rows.indices()[row]) } else { None };
+        let stretch = self.at(rows.indices()[row]);
+        let recorded = if free.is_none() { stretch } else { None };
         let recorded = recorded.into_iter().flat_map(|of| of.directions.column_iter().zip(of.lengths.iter().copied()));
         let free =
             free.into_iter().flat_map(move |free| free[row].iter().map(|of| (of.direction.as_view(), of.length)));
@@ -161,7 +171,7 @@ impl Stretches {
             (Some(_), Some(variances)) => variances[row] / self.noise,
             _ => 1.0,
         };
-        let doubt = self.at(rows.indices()[row]).map_or(1.0, |stretch| stretch.doubt);
+        let doubt = stretch.map_or(1.0, |stretch| stretch.doubt);
         recorded.chain(free).map(move |(direction, direction_length)| {
             let part = direction.dot(&rows.velocities().column(row));
             Equation { row, direction, part, noise, direction_length, doubt }

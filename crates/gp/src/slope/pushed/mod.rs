@@ -12,6 +12,7 @@ use crate::slope::judgement::{ReportInput, report};
 use crate::slope::push_test::PushTest;
 use crate::slope::search::{Outcome, outcome, outcome_of_nearly_best};
 use crate::slope::slope_gp::SlopeGp;
+use crate::stretches::rows::covered;
 use crate::stretches::view::View;
 use crate::stretches::{Stretches, Switches};
 
@@ -96,15 +97,6 @@ fn in_task_space(gp: &SlopeGp, rows: &Rows, (kept, own): (&Kept, &Kept), outcome
 fn expected(rows: &Rows, outcome: &Outcome, own: &Kept, samples: &Kept) -> f64 {
     let report = report(&ReportInput { outcome, kept: own, rows, across: CrossPathEvidence::Tested });
     report.expected_nupe / covered(rows, own, samples)
-}
-
-/// Share of the movements of `samples` that have `own` rows: fewer movements have to predict so much better.
-fn covered(rows: &Rows, own: &Kept, samples: &Kept) -> f64 {
-    // Further trajectories have no samples to look for stretches in.
-    let last = rows.indices().iter().map(|index| index.trajectory).max();
-    let count =
-        |kept: &Kept| kept.trajectories().into_iter().filter(|&trajectory| Some(trajectory) <= last).count() as f64;
-    (count(own) / count(samples)).min(1.0)
 }
 
 /// Of stretches in the recorded coordinates. Not tried where `plain` predicts nearly exactly. Where nothing pushes, only noise of the
