@@ -28,6 +28,8 @@ const HOPELESS: f64 = 2.0;
 const FEW: usize = 16;
 const SEVERAL: usize = 3;
 const MOST: usize = 64;
+/// Families are compared through inducing rows whose error on exact ones is at most so many times the least.
+const ABOUT: f64 = 1.2;
 /// Inducing rows beyond which rows are not more: time goes with the square of the former.
 const INDUCING: usize = 500;
 
@@ -71,14 +73,7 @@ pub(crate) fn on_all_rows(
     }
     let judge = Judge { weights: &thinned.data.noise_weights, rows: &kept.rows };
     let error = |tried: &OnAllRows| judge.error(&tried.kept, &tried.outcome.data, &tried.outcome.taken);
-    let best_of =
-        |tried: Vec<Option<OnAllRows>>| tried.into_iter().flatten().min_by(|a, b| error(a).total_cmp(&error(b)));
-    let own_units: &[bool] = match thinned.taken.left_out.is_nearly_exact() {
-        _ if gp.max_rows >= EXACT => &[],
-        true => &[false, true],
-        false => &[false],
-    };
-    let exact = best_of(own_units.iter().map(|&own_units| exact(gp, &more, thinned, own_units)).collect());
+    let exact = if gp.max_rows < EXACT { exact(gp, &more, thinned, &judge) } else { None };
     let thinned_error = judge.error(kept, &thinned.data, &thinned.taken);
     let least = exact.as_ref().map_or(thinned_error, |exact| error(exact).min(thinned_error));
     let worth = |all: &Kept, data: &SlopeData, of: &Candidate| judge.error(all, data, of) <= HOPELESS * least;
@@ -103,9 +98,9 @@ fn all_induced(
     let [some, all] = [FEW, MOST].map(|rows| at_most(rows * gp.inducing_rows.min(INDUCING)));
     let (Some(some), Some(all)) = (some, all) else { return (None, None) };
     if all.rows.len() < SEVERAL * some.rows.len() {
-        return (None, induced(gp, all, (before, NEARLY), worth));
+        return (None, induced(gp, all, (before, ABOUT), worth));
     }
-    let some = induced(gp, some, (before, NEARLY), &worth);
+    let some = induced(gp, some, (before, ABOUT), &worth);
     let all = some.as_ref().and_then(|some| induced(gp, all, (&some.outcome, 1.0), worth));
     (some, all)
 }
@@ -126,16 +121,30 @@ impl Judge<'_> {
     }
 }
 
-/// Models of few enough rows to be exact, with amplitudes of those; z and y in units of `thinned` or of their own, of which prediction
-/// without noise depends.
-fn exact(gp: &SlopeGp, more: &Kept, thinned: &Outcome, own_units: bool) -> Option<OnAllRows> {
+/// Models of few enough rows to be exact, with amplitudes of those. Where the model taken before predicts nearly exactly, prediction depends on
+/// the units of z and y: then in those of `thinned` or their own, whichever that model predicts better in.
+fn exact(gp: &SlopeGp, more: &Kept, thinned: &Outcome, judge: &Judge<'_>) -> Option<OnAllRows> {
     let count = more.rows.len();
     let hyper = scattered(count, count.min(gp.hyper_rows.max(HYPER)), 0.0).collect();
     let kept = Kept { hyper, ..more.clone() };
     let weights = noise_weights(&kept, thinned);
-    let data =
-        if own_units { SlopeData::from_kept(&kept, weights).ok()? } else { thinned.data.of_others(&kept, weights) };
-    let fit = |data: &SlopeData, kept: &Kept, (family, kind), _: &_| candidate(gp, data, kept, family, kind);
+    let before = (thinned.taken.family, thinned.taken.kind);
+    let in_units = |data: SlopeData| {
+        let anew = candidate(gp, &data, &kept, before.0, before.1);
+        let error = anew.as_ref().map_or(f64::INFINITY, |anew| judge.error(&kept, &data, anew));
+        (error, data, anew)
+    };
+    let (error, mut data, mut anew) = in_units(thinned.data.of_others(&kept, weights.clone()));
+    if thinned.taken.left_out.is_nearly_exact() {
+        let own = in_units(SlopeData::from_kept(&kept, weights).ok()?);
+        if own.0 < error {
+            (_, data, anew) = own;
+        }
+    }
+    let fit = |data: &SlopeData, kept: &Kept, of: (Family, ModelKind), _: &_| {
+        let known = if of == before { anew.take() } else { None };
+        known.or_else(|| candidate(gp, data, kept, of.0, of.1))
+    };
     compared((kept, data), (thinned, NEARLY), fit, |_, _, _| true)
 }
 
@@ -158,11 +167,11 @@ fn induced(
 fn compared(
     (kept, data): (Kept, SlopeData),
     (before, nearly): (&Outcome, f64),
-    fit: impl Fn(&SlopeData, &Kept, (Family, ModelKind), &[(Block, f64)]) -> Option<Candidate>,
+    mut fit: impl FnMut(&SlopeData, &Kept, (Family, ModelKind), &[(Block, f64)]) -> Option<Candidate>,
     worth: impl Fn(&Kept, &SlopeData, &Candidate) -> bool,
 ) -> Option<OnAllRows> {
     // One after the other: each is parallel in itself, and together they would take several times the memory.
-    let best = |kind| {
+    let mut best = |kind| {
         let tried = nearly_best_of(&before.families, kind, nearly)
             .into_iter()
             .map(|(family, prior)| (family, fit(&data, &kept, (family, kind), prior)));
