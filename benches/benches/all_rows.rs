@@ -2,7 +2,8 @@
 //! error on movements that were not shown, processor time, and whether the error is expected within ten times.
 //!
 //! `RAYON_NUM_THREADS=1 cargo bench -p benches --bench all_rows -- [data sets of each kind] [NAME]`; without a number five, without a
-//! name all kinds, otherwise those whose names contain it. Of each kind the medians of both errors and of the ratios of error and time, and how often the expected error is within ten times of the true one.
+//! name all kinds, otherwise those whose names contain it. Of each kind the medians of both errors and of the ratios of error and
+//! time, and how often the expected error is within ten times of the true one.
 
 #![allow(clippy::print_stdout)] // Its output is what it is for.
 
@@ -125,13 +126,17 @@ fn median(values: impl Iterator<Item = f64>) -> f64 {
 fn main() -> Result<(), Box<dyn Error>> {
     let words: Vec<String> = std::env::args().skip(1).filter(|word| !word.starts_with('-')).collect();
     let sets = words.iter().find_map(|word| word.parse().ok()).unwrap_or(5);
-    let name = words.into_iter().find(|word| word.parse::<usize>().is_err());
+    let name = words.into_iter().find(|word| word.parse::<u64>().is_err()).unwrap_or_default();
+    let kinds: Vec<Kind> = kinds().into_iter().filter(|kind| kind.name.contains(&name)).collect();
+    if kinds.is_empty() {
+        return Err(format!("no kind has {name:?} in its name; run without a name to see all").into());
+    }
     // What the program learns with, and what all rows are compared with.
     let all = SlopeGp { max_rows: 400, inducing_rows: 500, ..SlopeGp::default() };
     let exact = SlopeGp { max_rows: 1500, inducing_rows: 0, ..SlopeGp::default() };
     println!("| | movements | noise | all rows | 1,500 exact | ratio | CPU s | CPU ratio | within ten times |");
     println!("|---|---|---|---|---|---|---|---|---|");
-    for kind in kinds().into_iter().filter(|kind| name.as_ref().is_none_or(|name| kind.name.contains(name))) {
+    for kind in kinds {
         let mut fits = Vec::new();
         for seed in 1..=sets {
             let (rows, states, truth) = kind.draw(seed)?;

@@ -24,12 +24,12 @@ const ALLOWED: f64 = 1.05;
 const CLEARLY: f64 = 0.7;
 /// Multiple of the least error so far above which the other kind of model is not tried through inducing rows.
 const HOPELESS: f64 = 2.0;
+/// Families of exact models with at most so many times the least 1 − R² are tried through inducing rows.
+const ABOUT: f64 = 1.2;
 /// Rows, for each inducing one, on which families are compared where there are several times as many, and beyond which they are thinned.
 const FEW: usize = 16;
 const SEVERAL: usize = 3;
 const MOST: usize = 64;
-/// Families are compared through inducing rows whose error on exact ones is at most so many times the least.
-const ABOUT: f64 = 1.2;
 /// Inducing rows beyond which rows are not more: time goes with the square of the former.
 const INDUCING: usize = 500;
 
@@ -121,8 +121,8 @@ impl Judge<'_> {
     }
 }
 
-/// Models of few enough rows to be exact, with amplitudes of those. Where the model taken before predicts nearly exactly, prediction depends on
-/// the units of z and y: then in those of `thinned` or their own, whichever that model predicts better in.
+/// Models of few enough rows to be exact, with amplitudes of those. Where the model taken before predicts nearly exactly, prediction depends on the
+/// units of z and y: they are those of `thinned` or of these rows, whichever that model predicts better in.
 fn exact(gp: &SlopeGp, more: &Kept, thinned: &Outcome, judge: &Judge<'_>) -> Option<OnAllRows> {
     let count = more.rows.len();
     let hyper = scattered(count, count.min(gp.hyper_rows.max(HYPER)), 0.0).collect();
@@ -134,13 +134,10 @@ fn exact(gp: &SlopeGp, more: &Kept, thinned: &Outcome, judge: &Judge<'_>) -> Opt
         let error = anew.as_ref().map_or(f64::INFINITY, |anew| judge.error(&kept, &data, anew));
         (error, data, anew)
     };
-    let (error, mut data, mut anew) = in_units(thinned.data.of_others(&kept, weights.clone()));
-    if thinned.taken.left_out.is_nearly_exact() {
-        let own = in_units(SlopeData::from_kept(&kept, weights).ok()?);
-        if own.0 < error {
-            (_, data, anew) = own;
-        }
-    }
+    let own = thinned.taken.left_out.is_nearly_exact().then(|| SlopeData::from_kept(&kept, weights.clone()).ok());
+    let units = [Some(thinned.data.of_others(&kept, weights)), own.flatten()];
+    let tried = units.into_iter().flatten().map(in_units);
+    let (_, data, mut anew) = tried.min_by(|(a, ..), (b, ..)| a.total_cmp(b))?;
     let fit = |data: &SlopeData, kept: &Kept, of: (Family, ModelKind), _: &_| {
         let known = if of == before { anew.take() } else { None };
         known.or_else(|| candidate(gp, data, kept, of.0, of.1))
