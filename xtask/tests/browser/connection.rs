@@ -2,33 +2,35 @@
 
 use std::net::TcpStream;
 use std::path::Path;
+use std::sync::Arc;
 
 use serde_json::{Value, json};
-use tungstenite::{Message, WebSocket, client};
+use tungstenite::{Message, WebSocket};
 
-use super::PATIENCE;
 use super::program::Program;
 
-/// A browser with one page.
+/// A page of the browser, in a window that shares neither storage nor settings with others.
 pub(super) struct Connection {
     socket: WebSocket<TcpStream>,
     /// Of the page; empty for calls to the browser itself.
     session: String,
     calls: u64,
     events: Vec<Value>,
-    program: Program,
+    /// The browser ends with the last page.
+    _program: Arc<Program>,
 }
 
 impl Connection {
-    /// Starts a browser and opens an empty page in it.
+    /// Opens an empty page.
     pub(super) fn open(browser: &Path) -> Connection {
-        let program = Program::start(browser);
-        let (port, path) = program.address();
-        let stream = TcpStream::connect(("127.0.0.1", port)).unwrap();
-        stream.set_read_timeout(Some(PATIENCE)).unwrap();
-        let (socket, _) = client(format!("ws://127.0.0.1:{port}{path}"), stream).unwrap();
-        let mut connection = Connection { socket, session: String::new(), calls: 0, events: Vec::new(), program };
-        let target = connection.call("Target.createTarget", &json!({ "url": "about:blank" }))["targetId"].clone();
+        let program = Program::running(browser);
+        let socket = program.socket();
+        let mut connection =
+            Connection { socket, session: String::new(), calls: 0, events: Vec::new(), _program: program };
+        // Ends with this connection, and its page with it.
+        let context = connection.call("Target.createBrowserContext", &json!({ "disposeOnDetach": true }));
+        let page = json!({ "url": "about:blank", "browserContextId": context["browserContextId"], "newWindow": true });
+        let target = connection.call("Target.createTarget", &page)["targetId"].clone();
         let attached = connection.call("Target.attachToTarget", &json!({ "targetId": target, "flatten": true }));
         attached["sessionId"].as_str().unwrap().clone_into(&mut connection.session);
         connection
@@ -74,17 +76,6 @@ impl Connection {
             if let Message::Text(text) = self.socket.read().expect("the browser has stopped answering") {
                 return serde_json::from_str(&text).unwrap();
             }
-        }
-    }
-}
-
-impl Drop for Connection {
-    /// Asks the browser to end, so that it takes its processes with it.
-    fn drop(&mut self) {
-        self.session.clear();
-        let close = json!({ "id": 0, "method": "Browser.close" });
-        if self.socket.send(Message::text(close.to_string())).is_ok() {
-            self.program.wait();
         }
     }
 }

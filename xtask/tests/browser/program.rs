@@ -3,12 +3,16 @@
 use std::env;
 use std::fs;
 use std::io::Write as _;
+use std::net::TcpStream;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
+use std::sync::{Arc, Mutex, PoisonError, Weak};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
+use serde_json::json;
 use tempfile::TempDir;
+use tungstenite::{Message, WebSocket, client};
 
 use super::PATIENCE;
 
@@ -61,8 +65,22 @@ pub(super) struct Program {
     profile: TempDir,
 }
 
+/// The browser that the pages at hand are open in.
+static RUNNING: Mutex<Weak<Program>> = Mutex::new(Weak::new());
+
 impl Program {
-    pub(super) fn start(browser: &Path) -> Program {
+    /// The browser that runs, or a new one. Starting it takes longer than most tests.
+    pub(super) fn running(browser: &Path) -> Arc<Program> {
+        // A test that failed here leaves what it found.
+        let mut running = RUNNING.lock().unwrap_or_else(PoisonError::into_inner);
+        running.upgrade().unwrap_or_else(|| {
+            let program = Arc::new(Program::start(browser));
+            *running = Arc::downgrade(&program);
+            program
+        })
+    }
+
+    fn start(browser: &Path) -> Program {
         let profile = tempfile::tempdir().unwrap();
         let mut command = Command::new(browser);
         command.args(ARGUMENTS).arg(format!("--user-data-dir={}", profile.path().display())).arg("about:blank");
@@ -70,31 +88,33 @@ impl Program {
         Program { process: process.unwrap_or_else(|e| panic!("{}: {e}", browser.display())), profile }
     }
 
-    /// Port and path under which it listens, which it writes into its profile.
-    pub(super) fn address(&self) -> (u16, String) {
+    /// A web socket to it. It writes the port and path under which it listens into its profile.
+    pub(super) fn socket(&self) -> WebSocket<TcpStream> {
         let file = self.profile.path().join("DevToolsActivePort");
         let started = Instant::now();
         loop {
             let text = fs::read_to_string(&file).unwrap_or_default();
             if let Some((port, path)) = text.split_once('\n').filter(|(_, path)| !path.is_empty()) {
-                return (port.parse().unwrap(), path.trim().to_owned());
+                let stream = TcpStream::connect(("127.0.0.1", port.parse().unwrap())).unwrap();
+                stream.set_read_timeout(Some(PATIENCE)).unwrap();
+                return client(format!("ws://127.0.0.1:{port}{}", path.trim()), stream).unwrap().0;
             }
             assert!(started.elapsed() < PATIENCE, "the browser was started but does not listen");
-            sleep(Duration::from_millis(10));
-        }
-    }
-
-    /// Waits for its end.
-    pub(super) fn wait(&mut self) {
-        let asked = Instant::now();
-        while asked.elapsed() < FAREWELL && self.process.try_wait().is_ok_and(|status| status.is_none()) {
             sleep(Duration::from_millis(10));
         }
     }
 }
 
 impl Drop for Program {
+    /// Asks it to end, so that it takes its processes with it, and then ends it.
     fn drop(&mut self) {
+        let close = json!({ "id": 0, "method": "Browser.close" });
+        if self.socket().send(Message::text(close.to_string())).is_ok() {
+            let asked = Instant::now();
+            while asked.elapsed() < FAREWELL && self.process.try_wait().is_ok_and(|status| status.is_none()) {
+                sleep(Duration::from_millis(10));
+            }
+        }
         // Both fail where it has ended already, which is what is wanted.
         let _ = self.process.kill();
         let _ = self.process.wait();
