@@ -4,6 +4,7 @@ use std::error::Error;
 use std::fmt;
 
 use clap::error::ErrorKind;
+use text::three_lines;
 
 /// Why a command stops.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -48,8 +49,7 @@ impl Failure {
 
 impl fmt::Display for Failure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let line = |text: &str| text.lines().map(str::trim).collect::<Vec<_>>().join(" ");
-        write!(f, "error: {}\n  in:  {}\n  try: {}", line(&self.what), line(&self.place), line(&self.remedy))
+        f.write_str(&three_lines(&self.what, &self.place, &self.remedy))
     }
 }
 

@@ -131,7 +131,7 @@ fn cargo(root: &Path, arguments: &[&str]) -> anyhow::Result<String> {
     let output = Command::new(program).args(arguments).arg("--locked").current_dir(root).output();
     let output = output.context("cargo cannot be run")?;
     if output.status.success() {
-        return String::from_utf8(output.stdout).context("cargo's answer is no text");
+        return String::from_utf8(output.stdout).context("cargo's answer is not text");
     }
     let what = format!("cargo failed: {}", String::from_utf8_lossy(&output.stderr).trim());
     Err(Failure::new(what, format!("cargo {} --locked", arguments.join(" ")), "cargo fetch --locked").into())

@@ -85,7 +85,7 @@ impl Publish {
 fn publishable(experiments: &[Experiment], run: &Path) -> anyhow::Result<Sources> {
     let mut sources = RunFolder::at(run).sources()?;
     let seed = sources.results.seed;
-    complete(experiments, &sources.results).with_context(|| format!("{} is no full run", relative(run)))?;
+    complete(experiments, &sources.results).with_context(|| format!("{} is not a full run", relative(run)))?;
     check(experiments, &sources.results).with_context(|| format!("{} is damaged", relative(run)))?;
     ensure!([FIRST_SEED, SECOND_SEED].contains(&seed), "{} is of seed {seed}, not 1 or 2", relative(run));
     // The pages show the figures of the first seed only.

@@ -136,7 +136,7 @@ fn what_is_damaged_is_refused() {
         ("/origin/n_trajectories", json!(3), "kept trajectories"),
         ("/origin/kept", json!([1, 1]), "kept trajectories"),
         ("/origin/kept", json!([]), "kept trajectories"),
-        ("/origin/labels", json!([{ "name": "x", "unit": "m" }]), "one label for each dimension"),
+        ("/origin/labels", json!([{ "name": "x", "unit": "m" }]), "the number of labels"),
         ("/origin", json!({}), "missing field"),
         ("/regression", json!(null), "invalid type"),
         ("/regression/mean", json!([0.0, 0.0]), "means"),

@@ -33,10 +33,12 @@ pub(crate) fn clean(drafts: &mut RawRecordings, channels: &[String], options: &R
         if options.sort {
             sort(&mut draft);
         }
-        refuse_backwards(&draft, drafts.word)?;
         match options.split_gap {
             Some(longest) => episodes.extend(split(draft, longest)),
-            None => episodes.push(draft),
+            None => {
+                refuse_backwards(&draft, drafts.word)?;
+                episodes.push(draft);
+            }
         }
     }
     drafts.findings.extend(not_recorded(missing, samples, options.nan));
@@ -192,7 +194,7 @@ fn sort(draft: &mut RawEpisode) {
 fn refuse_backwards(draft: &RawEpisode, word: &str) -> Result<(), ReadError> {
     let Some(at) = draft.times.windows(2).position(|pair| pair[1] < pair[0]) else { return Ok(()) };
     let what = format!("stamps go back by {} s", rounded(draft.times[at] - draft.times[at + 1]));
-    let remedy = "--sort (puts samples in the order of their stamps), or --episode if a new movement begins here";
+    let remedy = "--split-gap 1 if a new movement begins here (cuts where stamps go back or pause for 1 s), or --sort (puts samples in the order of their stamps)";
     Err(ReadError::TimeBackwards(Fault::new(what, draft.place(at + 1, word), remedy)))
 }
 
@@ -216,10 +218,11 @@ fn leave_out_duplicates(draft: &mut RawEpisode, word: &str) -> Option<Finding> {
     Some(remark(what, "check the recorder's clock"))
 }
 
-/// Cuts where stamps are more than `longest` seconds apart.
+/// Cuts where stamps go back, or are more than `longest` seconds apart.
 fn split(draft: RawEpisode, longest: f64) -> Vec<RawEpisode> {
     let mut cuts: Vec<usize> = vec![0];
-    cuts.extend((1..draft.len()).filter(|&sample| draft.times[sample] - draft.times[sample - 1] > longest));
+    let passed = |sample: usize| draft.times[sample] - draft.times[sample - 1];
+    cuts.extend((1..draft.len()).filter(|&sample| passed(sample) < 0.0 || passed(sample) > longest));
     cuts.push(draft.len());
     if cuts.len() == 2 {
         return vec![draft];

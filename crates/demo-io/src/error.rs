@@ -25,7 +25,7 @@ macro_rules! read_error {
         /// Why nothing was read. The variants are for programs, the [`Fault`] inside is for people.
         ///
         /// ```text
-        /// 'x' is no finite number
+        /// 'x' is not a finite number
         ///   in:  demos.csv, line 17 (episode 1)
         ///   try: --nan drop (leaves the sample out) or --nan fill (interpolates gaps of up to 3 samples)
         /// ```

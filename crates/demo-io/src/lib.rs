@@ -62,7 +62,7 @@ pub use options::{Format, Nan, ReadOptions, SamplesAre, TimeUnit};
 pub use read::{files_of, pieces_of, read, read_all, read_further, read_pieces, read_with_context};
 pub use regular_file::{FileState, read_bounded, read_bytes, read_text};
 pub use resample::{ResampleError, resampled};
-pub use rows::piece::{Piece, Span};
+pub use rows::piece::{Piece, Span, bytes_of};
 pub use whole_file::{Sink, TempFile, abandon_drafts, write_whole};
 pub use write::{LinkFrames, WriteError, write, write_with_robot};
 

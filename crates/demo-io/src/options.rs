@@ -44,7 +44,7 @@ pub struct ReadOptions {
     pub nan: Nan,
     /// `--sort`: samples are put in the order of their stamps.
     pub sort: bool,
-    /// `--split-gap`: seconds; an episode is cut where stamps are further apart.
+    /// `--split-gap`: seconds; an episode is cut where stamps go back or are further apart.
     pub split_gap: Option<f64>,
     /// `--filter`: a named subset of the episodes (robomimic's masks).
     pub filter: Option<String>,

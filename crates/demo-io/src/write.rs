@@ -69,6 +69,16 @@ pub enum WriteError {
         /// What the robot says.
         reason: String,
     },
+    /// Stamps of ROS 2 end after 68 years.
+    #[error(
+        "a sample of episode {episode} is {seconds} s after the first, and the stamps of the whole file end before 68 years"
+    )]
+    TooLong {
+        /// In which it is.
+        episode: String,
+        /// After the first sample of its episode.
+        seconds: f64,
+    },
     /// There is no episode or no channel.
     #[error("there is nothing to write: {episodes} episodes of {channels} channels")]
     Nothing {

@@ -177,6 +177,16 @@ fn stamps_are_sorted_cut_and_kept_once() {
     assert!(said(&found).contains("a stamp occurs twice"));
 }
 
+/// Takes one after the other, each with a clock of its own that begins at 0.
+#[test]
+fn stamps_that_go_back_begin_a_movement_if_gaps_do() {
+    let text = "t,x\n0,0\n1,1\n2,3\n0,5\n1,5.5\n0.5,7\n1.5,8\n";
+    refused("take.csv", text, &plain(), "TimeBackwards", &["go back by 2 s", "line 5", "--split-gap 1"]);
+    let found = parsed("take.csv", text, &ReadOptions { split_gap: Some(5.0), ..plain() }).unwrap();
+    assert_eq!(lengths(&found), [3, 2, 2]);
+    assert_eq!(found.episodes[2].times.stamps()[..], [0.0, 1.0]);
+}
+
 /// What rounding makes of stamps far from the first one must not occur twice either.
 #[test]
 fn stamps_ascend_after_they_begin_at_zero() {
@@ -284,7 +294,7 @@ proptest! {
 #[test]
 fn names_that_hold_line_ends_leave_messages_their_lines() {
     let table = |middle: &str| format!("t,\"x\ny\",z\n0,1,2\n0.1,{middle},3\n0.2,1,4\n");
-    refused("a.csv", table("NaN").replace("0.2,1", "0.2,2"), &plain(), "NotFinite", &["'x y' is no finite number"]);
+    refused("a.csv", table("NaN").replace("0.2,1", "0.2,2"), &plain(), "NotFinite", &["'x y' is not a finite number"]);
     // A column that never changes is noted.
     let found = parsed("a.csv", table("1"), &plain()).unwrap();
     assert!(

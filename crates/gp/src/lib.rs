@@ -41,7 +41,7 @@
 //!
 //! # Equations
 //!
-//! Comments cite (S1)–(S43) and (R1)–(R9). [`equations`] defines them and lists the steps of the search; it is
+//! Comments cite (S1)–(S46) and (R1)–(R9). [`equations`] defines them and lists the steps of the search; it is
 //! `docs/slope-gp.md` of the repository. `docs/which-learner.md` compares the learners, `docs/decisions/gp.md` gives
 //! the reasons.
 //!
@@ -53,12 +53,12 @@
 //! - **Constraints that push** (A u = b, b ≠ 0) with A or b changing from sample to sample, or that project obliquely.
 //!   While A and b are constant, directions in which velocities differ are learnt from ([`TrustReport::push`]); so they may be for a
 //!   robot's hand ([`Rows::with_task_spaces`]).
-//! - **Motion that depends on more than the state** (time, a moving target) is [`Hypothesis::Unexplained`]. What stays as it is during
+//! - **Motion that depends on more than the state** (time, a moving target) is [`Hypothesis::Unexplained`]. What is constant during
 //!   a movement, a goal or a load, can be context ([`Rows::with_context`]).
 //! - **Corridors**: where all movements follow one narrow path, nothing tests the policy across it.
 //! - **Kinks in many dimensions** are learnt slowly; the held-out R² is then low and [`TrustReport::warnings`] says so.
-//! - **More than 1,500 rows** are thinned, since time grows with their cube ([`SlopeGp::max_rows`]). With [`SlopeGp::inducing_rows`] the
-//!   model is conditioned on all of them.
+//! - **More than 1,500 rows** are thinned, since time grows with their cube ([`SlopeGp::max_rows`]). With [`SlopeGp::inducing_rows`], up to
+//!   64 times as many rows are learnt from as well, if that predicts left-out movements better.
 //! - [`GpError`]: no motion, fewer than three usable trajectories, or too few rows.
 
 mod constraint_estimate;
@@ -96,7 +96,7 @@ pub use kernel::falling::{Falling, Series, Summand};
 pub use kernel::family::{Family, Trend};
 pub use kernel::shape::Shape;
 pub use kernel::term::{Exponential, Fall, Term};
-pub use left_out::LeftOut;
+pub use left_out::LeftOutPredictions;
 pub use left_out::curl_test::CurlTest;
 pub use reading::Hypothesis;
 pub use reading::auto_gp::{AutoFit, AutoGp};

@@ -21,7 +21,7 @@ const CAUTION: f64 = 1e-8;
 const SINGULAR: f64 = 1e-7;
 /// Share of a prior variance by which some rows must explain more of it than is needed, whatever rounding does.
 const MARGIN: f64 = 1e-3;
-/// After so many states it is clear whether it is worth asking, which it is if one in [`ONE_OF`] is told.
+/// After so many states, the outline stays in use if it decided at least one in [`ONE_OF`].
 const TRIED: usize = 256;
 
 /// A part P of a model: rows S and the factor of G_SS, where bᵀG⁻¹b is what all rows explain of a variance and b its covariances with them. G

@@ -38,7 +38,7 @@ fn judged(fit: &SlopeFit, groups: &[(DMatrix<f64>, DMatrix<f64>)]) -> Judged {
 }
 
 /// Movements of 500 samples, five times and fifty times as many: medians of five data sets, or of `SETS`, as a table, and what the fit
-/// expects of itself, least and most. Learner and settings are the program's.
+/// expects of itself, least and most. Learner and settings are the program's, without its search for constraints that push.
 #[test]
 #[ignore = "ten minutes of a release build; prints"]
 fn more_movements_are_never_worse() {

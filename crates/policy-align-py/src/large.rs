@@ -34,7 +34,7 @@ pub(crate) fn divide(
     let (options, reading) = (learning.options()?, reading_of(reading)?);
     let hint = "at_once=\"2GB\" or \"all\"";
     let bytes = Division::bytes(at_once)
-        .ok_or_else(|| Refusal::new(format!("'{at_once}' is no size of files"), "at_once", hint))?;
+        .ok_or_else(|| Refusal::new(format!("'{at_once}' is not a size of files"), "at_once", hint))?;
     if let Some(flag) = options.needs_whole_recordings()
         && !Division::fits(&paths, bytes).map_err(|error| Refusal::read(&error))?
     {
@@ -50,7 +50,11 @@ pub(crate) fn divide(
 pub(crate) fn reading_of(options: &str) -> Result<ReadOptions, Refusal> {
     serde_json::from_str(options).map_err(|error| {
         let text = error.to_string();
-        Refusal::new(text.split(" at line").next().unwrap_or(&text), "read()", "help(Demonstrations.read)")
+        Refusal::new(
+            text.split(" at line").next().unwrap_or(&text).replace("`as`", "`format`"),
+            "read()",
+            "help(Demonstrations.read)",
+        )
     })
 }
 

@@ -102,5 +102,5 @@ fn positive(number: f64, name: &str) -> Result<f64, Refusal> {
 }
 
 fn no_number(given: &str, name: &str) -> Refusal {
-    Refusal::new(format!("'{given}' is no positive number"), name, format!("{name}=\"auto\""))
+    Refusal::new(format!("'{given}' is not a positive number"), name, format!("{name}=\"auto\""))
 }

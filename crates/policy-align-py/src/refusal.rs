@@ -52,7 +52,11 @@ impl Refusal {
 
     /// `episodes`: their names, to find the number of the one at fault.
     pub(crate) fn prepare(error: &PrepareError, place: &str, episodes: &[String]) -> Self {
-        let refusal = Refusal::of_text(&error.to_string(), place, "other recordings");
+        let otherwise = match error {
+            PrepareError::Scale { name, .. } => format!("scale={{'{name}': 10.0}}"),
+            _ => "other recordings".to_owned(),
+        };
+        let refusal = Refusal::of_text(&error.to_string(), place, &otherwise);
         match error {
             PrepareError::Episode { episode, source } => {
                 let trajectory = episodes.iter().position(|name| name == episode);

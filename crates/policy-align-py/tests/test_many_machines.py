@@ -151,7 +151,7 @@ def test_one_fit_is_shared_out(tmp_path: Path) -> None:
     with ThreadPool(2) as pool:
         assert model(learner.fit_files(*files, at_once=at_once, map=pool.map)) == alone
     assert model(learner.fit_files(*files, at_once="all")) != alone
-    with pytest.raises(PolicyAlignError, match="no size"):
+    with pytest.raises(PolicyAlignError, match="not a size"):
         learner.fit_files(*files, at_once="much")
     with pytest.raises(PolicyAlignError, match="all files at once"):
         PolicyAlign().fit_files(*files, at_once=at_once)

@@ -162,8 +162,8 @@ def test_commands_are_predictions_to_the_bit(
     process.send_signal(signal.SIGINT)
     out, err = process.communicate(timeout=PATIENCE)
     assert process.returncode == 0, err
-    assert "zero at the end" in out and "moves: the state is within the data" in err
-    assert err.count("moves:") == 1, err
+    assert "zero at the end" in out and "moving: the state is within the data" in err
+    assert err.count("moving:") == 1, err
 
 
 @pytest.mark.parametrize("end", [signal.SIGINT, signal.SIGTERM])
@@ -246,11 +246,11 @@ def test_what_is_wrong_is_said(program: Path, model: Path) -> None:
         return ran.stderr.splitlines()
 
     assert refused(domain="233") == [
-        "error: '233' is no domain of ROS 2: 0 to 232",
+        "error: '233' is not a domain of ROS 2: 0 to 232",
         "  in:  the environment's ROS_DOMAIN_ID",
         "  try: the number that the robot has",
     ]
-    assert refused("--topic", "states")[0].startswith("error: 'states' is no full name of a topic")
+    assert refused("--topic", "states")[0].startswith("error: 'states' is not a full name of a topic")
     assert refused("--rate", "0")[1] == "  in:  --rate 0 --stale 0.2"
     assert refused("--rate", "1")[1] == "  in:  --rate 1 --stale 0.2"
     assert refused("--stale", "nan")[0] == "error: stale is NaN"

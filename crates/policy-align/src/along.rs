@@ -1,13 +1,15 @@
 //! What a policy says of movements along their own directions: all that constraints leave of it.
 
 use gp::Rows;
-use motion::Policy;
+use motion::{Policy, SampleIndex};
 use nalgebra::DVector;
 
 /// A sample that moves, u = r n, beside a policy there.
 pub(crate) struct Along {
     /// Its movement.
     pub(crate) trajectory: usize,
+    /// Its place there.
+    pub(crate) sample: usize,
     /// n, (n).
     pub(crate) direction: DVector<f64>,
     /// r.
@@ -28,8 +30,8 @@ pub(crate) fn along<'a>(policy: &'a dyn Policy, rows: &'a Rows) -> impl Iterator
             let velocity = rows.velocities().column(first + at);
             let direction = velocity.try_normalize(0.0)?;
             let wanted = direction.dot(&actions.view((0, at), (direction.len(), 1)));
-            let trajectory = rows.indices()[first + at].trajectory;
-            Some(Along { trajectory, direction, speed: velocity.norm(), wanted })
+            let SampleIndex { trajectory, sample } = rows.indices()[first + at];
+            Some(Along { trajectory, sample, direction, speed: velocity.norm(), wanted })
         })
     })
 }

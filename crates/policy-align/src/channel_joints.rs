@@ -1,9 +1,16 @@
-use kinematics::{JointKind, KinematicsError, RobotModel};
+use std::f64::consts::TAU;
+
+use kinematics::{Joint, JointKind, KinematicsError, RobotModel};
 use nalgebra::{DMatrix, DMatrixView, DVector, DVectorView};
 use prepare::StateChannel;
 
+use crate::{Finding, Verdict};
+
 /// Configurations that are placed at once; their links fit into the processor's cache.
 const AT_ONCE: usize = 64;
+
+/// Turns beyond which numbers of joints are hardly radians.
+const TURNS: f64 = 2.0;
 
 /// The joints of a robot that the channels of a state are.
 #[derive(Debug, Clone)]
@@ -14,13 +21,18 @@ pub(crate) struct ChannelJoints {
 }
 
 impl ChannelJoints {
-    /// By name.
+    /// By name, with or without a unit in brackets.
     ///
     /// # Errors
-    /// [`KinematicsError::UnknownJoint`] for a channel that is no joint.
-    pub(crate) fn of<'a>(robot: &RobotModel, channels: impl Iterator<Item = &'a str>) -> Result<Self, KinematicsError> {
-        let places = channels.map(|channel| robot.joint(channel)).collect::<Result<_, _>>()?;
-        Ok(ChannelJoints { n_joints: robot.n_joints(), places })
+    /// In a sentence: which channel is not a joint.
+    pub(crate) fn of<'a>(robot: &RobotModel, channels: impl Iterator<Item = &'a str>) -> Result<Self, String> {
+        let place = |channel: &'a str| {
+            joint_of(robot, channel).ok_or_else(|| {
+                let joints: Vec<&str> = robot.joints().iter().map(Joint::name).collect();
+                format!("channel '{channel}' is not a joint of the robot, which has {}", joints.join(", "))
+            })
+        };
+        Ok(ChannelJoints { n_joints: robot.n_joints(), places: channels.map(place).collect::<Result<_, _>>()? })
     }
 
     /// One channel for each joint, in the order of a configuration.
@@ -70,6 +82,31 @@ impl ChannelJoints {
     }
 }
 
+/// The place in a configuration of the joint that a channel is: `elbow` or `elbow [deg]`.
+pub(crate) fn joint_of(robot: &RobotModel, channel: &str) -> Option<usize> {
+    let bare = || channel.split(['[', '(']).next().unwrap_or(channel).trim_end();
+    robot.joint(channel).or_else(|_| robot.joint(bare())).ok()
+}
+
+/// Names channels that are joints which turn, whose numbers would be many turns as radians, and have no unit.
+///
+/// # Errors
+/// In a sentence: what is wrong with the text of the URDF.
+pub fn joints_in_degrees(text: &str, state: &[StateChannel]) -> Result<Option<Finding>, String> {
+    let robot = RobotModel::from_urdf(text).map_err(|error| error.to_string())?;
+    let turns = |channel: &&StateChannel| {
+        let kind = joint_of(&robot, &channel.name).map(|place| robot.joints()[place].kind());
+        let many = channel.low.abs().max(channel.high.abs()) > TURNS * TAU;
+        channel.unit.is_none() && many && !matches!(kind, None | Some(JointKind::Prismatic))
+    };
+    let names: Vec<&str> = state.iter().filter(turns).map(|channel| channel.name.as_str()).collect();
+    Ok((!names.is_empty()).then(|| Finding {
+        verdict: Verdict::Doubtful,
+        what: format!("joints were taken to be in radians, but move by many turns: {}", names.join(", ")),
+        next: format!("if they are in degrees: --degrees {}", names.join(",")),
+    }))
+}
+
 /// What divides the numbers that are learnt from, of channels that are joints, into radians and metres, (n).
 pub(crate) fn scales_of_joints(state: &[StateChannel]) -> DVector<f64> {
     let scale = |channel: &StateChannel| channel.scale / unit(channel.unit.as_deref(), None);
@@ -114,5 +151,30 @@ mod tests {
         let learnt = dvector![1.5, 2.0 * 90.0, 0.5 * 250.0, 4.0 * 0.25];
         let converted = learnt.component_div(&scales_of_joints(&state));
         assert!((converted - dvector![1.5, std::f64::consts::FRAC_PI_2, 0.25, 0.25]).amax() < 1e-12);
+    }
+
+    #[test]
+    fn joints_that_turn_many_times_are_named() {
+        let urdf = r#"<robot name="arm"><link name="base"/><link name="upper"/><link name="slide"/>
+            <joint name="elbow" type="continuous"><parent link="base"/><child link="upper"/><axis xyz="0 0 1"/></joint>
+            <joint name="rail" type="prismatic"><parent link="upper"/><child link="slide"/><axis xyz="1 0 0"/>
+                <limit lower="-100" upper="100" effort="1" velocity="1"/></joint></robot>"#;
+        let channel = |name: &str, unit: Option<&str>, high: f64| StateChannel {
+            name: name.to_owned(),
+            unit: unit.map(ToOwned::to_owned),
+            scale: 1.0,
+            low: -1.0,
+            high,
+            median: 0.0,
+        };
+        let found = |state: &[StateChannel]| joints_in_degrees(urdf, state).unwrap().map(|finding| finding.next);
+        let remedy = "if they are in degrees: --degrees elbow";
+        assert_eq!(found(&[channel("elbow", None, 80.0), channel("rail", None, 80.0)]).as_deref(), Some(remedy));
+        assert_eq!(found(&[channel("elbow", None, 6.5)]), None);
+        assert_eq!(found(&[channel("elbow [deg]", Some("deg"), 80.0)]), None);
+        let robot = RobotModel::from_urdf(urdf).unwrap();
+        assert_eq!(ChannelJoints::of(&robot, ["rail", "elbow [deg]"].into_iter()).unwrap().places, [1, 0]);
+        let refused = ChannelJoints::of(&robot, ["q1"].into_iter()).unwrap_err();
+        assert_eq!(refused, "channel 'q1' is not a joint of the robot, which has elbow, rail");
     }
 }

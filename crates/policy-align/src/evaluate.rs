@@ -18,7 +18,7 @@ pub struct Evaluation {
     pub policy_error: f64,
     /// [`Evaluation::slope_error`] of each movement, (K); none where it does not move.
     pub episodes: Vec<Option<f64>>,
-    /// uᵀπ̂/r − r of every sample that moves, in units of the scaled state per second.
+    /// uᵀπ̂/r − r of every sample that moves, in order of movements and samples, (M' ≤ M); in units of the scaled state per second.
     pub residuals: Vec<f64>,
     /// Share of samples within the data that the model was learnt from: [`ModelPolicy::is_supported`](crate::ModelPolicy::is_supported).
     pub supported: f64,
@@ -40,8 +40,8 @@ pub struct Truth {
 /// Slope errors, residuals and support on other movements; with the truth also nUPE and nCPE.
 ///
 /// # Errors
-/// [`GpError`] if the movements cannot be cleaned, or the policy has another dimension; [`EvaluateError::Metrics`] if the
-/// truth does not fit the movements.
+/// [`EvaluateError::Dimension`] if the policy has another dimension, [`EvaluateError::Gp`] if the movements cannot be cleaned;
+/// [`EvaluateError::Projectors`] or [`EvaluateError::Metrics`] if the truth does not fit the movements.
 pub fn evaluate(model: &Model, prepared: &Prepared, truth: Option<&Truth>) -> Result<Evaluation, EvaluateError> {
     let policy = model.learnt.policy();
     let dim = prepared.demonstrations.dim() + prepared.demonstrations.context_dim();
@@ -77,8 +77,7 @@ fn supported(model: &Model, rows: &gp::Rows) -> f64 {
     let policy = model.policy();
     let scales = DVector::from_iterator(policy.dim(), model.inputs().map(|channel| channel.scale));
     let states = DMatrix::from_fn(policy.dim(), rows.len(), |k, row| rows.states()[(k, row)] / scales[k]);
-    let supports = policy.certainty(states.as_view()).support;
-    let within = supports.iter().filter(|&&support| support >= policy.least_support());
+    let within = policy.are_supported(states.as_view()).into_iter().filter(|&supported| supported);
     within.count() as f64 / rows.len() as f64
 }
 

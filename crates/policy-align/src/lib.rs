@@ -56,7 +56,7 @@
 //!   then doubtful.
 //! - **Constraints that push** (A u = b with b ≠ 0) are recovered only while A and b stay constant for some twenty
 //!   samples, and oblique projections not at all.
-//! - **Motion that depends on more than the recorded state** (time, a moving target): "do not use". What stays as it is during a
+//! - **Motion that depends on more than the recorded state** (time, a moving target): "do not use". What is constant during a
 //!   movement, such as a goal or a load, can be context: [`Model::in_context`].
 //! - **Mixed units**: constraints act at right angles in some unit. [`fit()`] learns it if the data determine it;
 //!   [`PrepareOptions::scale`] chooses it.
@@ -87,6 +87,7 @@ mod trust;
 
 /// What a program needs besides, so that it depends on this crate alone.
 pub use ::{align, constraints, demo_io, gp, kinematics, lwpr, motion, nalgebra, prepare, rand, smoothing};
+pub use channel_joints::joints_in_degrees;
 pub use choice::Choice;
 pub use context::ContextError;
 pub use error::FitError;

@@ -3,7 +3,7 @@ use kinematics::{Joint, LinkId, RobotModel, Workspace};
 use motion::Channel;
 use nalgebra::{DVector, DVectorView, Isometry3};
 
-use crate::channel_joints::{ChannelJoints, unit};
+use crate::channel_joints::{ChannelJoints, joint_of, unit};
 
 /// The frames of a robot's links along recordings or roll-outs, for [`demo_io::write_with_robot`].
 ///
@@ -36,9 +36,9 @@ impl RobotFrames {
         let rows: Vec<usize> = (0..channels.len()).filter(|&row| !others.contains(&channels[row].name)).collect();
         let channels: Vec<&Channel> = rows.iter().map(|&row| &channels[row]).collect();
         let names = || channels.iter().map(|channel| channel.name.as_str());
-        let by_name = names().any(|name| robot.joint(name).is_ok());
+        let by_name = names().any(|name| joint_of(&robot, name).is_some());
         let joints = if by_name {
-            ChannelJoints::of(&robot, names()).map_err(|error| error.to_string())?
+            ChannelJoints::of(&robot, names())?
         } else if channels.len() == robot.n_joints() {
             ChannelJoints::in_order(&robot)
         } else {

@@ -181,11 +181,11 @@ fn parts_that_do_not_fit_are_refused() {
     );
     let text = std::fs::read(path.join("part-2-of-2.json")).unwrap();
     std::fs::write(path.join("cut.json"), &text[..text.len() / 2]).unwrap();
-    refused(&merge("part-1-of-2.json cut.json"), "no part of a fit");
-    refused(&merge("part-1-of-2.json model.json"), "no part of a fit");
-    refused(&format!("fit {files} {AT_ONCE} --shard 3/2"), "no share");
+    refused(&merge("part-1-of-2.json cut.json"), "not a part of a fit");
+    refused(&merge("part-1-of-2.json model.json"), "not a part of a fit");
+    refused(&format!("fit {files} {AT_ONCE} --shard 3/2"), "not a share");
     refused(&format!("fit {files} --shard 1/2"), "nothing to share");
-    refused(&format!("fit {files} --at-once 5apples"), "no size");
+    refused(&format!("fit {files} --at-once 5apples"), "not a size");
     refused(&format!("fit {files} {AT_ONCE} --hold-out 1"), "all files at once");
     refused(&format!("fit {files} {AT_ONCE} --learner policy-align"), "all files at once");
     let text = std::fs::read_to_string(path.join("1.csv")).unwrap();

@@ -119,6 +119,12 @@ fn a_model_without_its_context_is_not_followed() {
     let there = model().in_named_context(&[("goal_y".to_owned(), 0.3), ("goal_x".to_owned(), -0.4)]).unwrap();
     assert_eq!(there.open_context(), []);
     assert!(RollOut::default().follow(&there, &start).is_ok());
+    let far = model().in_named_context(&[("goal_y".to_owned(), 0.3), ("goal_x".to_owned(), -40.0)]).unwrap();
+    let refused = RollOut::default().follow(&far, &start).unwrap_err();
+    assert!(
+        matches!(&refused, RollOutError::ContextUnsupported { name, value: -40.0, .. } if name == "goal_x"),
+        "{refused}"
+    );
     let missing = model().in_named_context(&[("goal_y".to_owned(), 0.3)]).unwrap_err();
     assert_eq!(missing, ContextError::Missing { names });
 }

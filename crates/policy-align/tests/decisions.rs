@@ -90,7 +90,11 @@ fn smoothing_can_be_requested() {
         let ran = check(flags);
         assert!(ran.code == Some(0) && ran.out.contains(said), "{flags}:\n{}{}", ran.out, ran.err);
     }
-    for (flags, said) in [("--smooth much", "'much' is no window"), ("--smooth 4", "a window of 4 samples")] {
+    for (flags, said) in [
+        ("--smooth much", "'much' is not a window"),
+        ("--smooth infs", "'infs' is not a window"),
+        ("--smooth 4", "a window of 4 samples"),
+    ] {
         let ran = check(flags);
         assert!(ran.code == Some(2) && ran.err.contains(said) && ran.err.lines().count() == 3, "{flags}:\n{}", ran.err);
     }

@@ -154,7 +154,7 @@ fn every_learner_acts_as_its_model() {
 #[test]
 fn names_of_functions_are_names_and_comments_stay_comments() {
     let mut model = direct(&toy(3, 4));
-    for name in ["", "1st", "a-b", "int", "Z", "f(", "é"] {
+    for name in ["", "1st", "a-b", "int", "Z", "f(", "é", "log", "powf", "y1l", "isnan"] {
         let c = CSource { name: name.to_owned(), ..CSource::default() };
         assert_eq!(c.of(&model), Err(ExportError::Name { name: name.to_owned() }));
     }

@@ -192,7 +192,7 @@ fn stamps() {
         episode.velocities = None;
     });
     let slow = prepared(&positions);
-    assert_eq!(verdict(&slow, "are stamps milliseconds?"), Verdict::Doubtful);
+    assert_eq!(verdict(&slow, "stamps may be milliseconds"), Verdict::Doubtful);
     assert_eq!(slow.time_step, 50.0);
     let given = PrepareOptions { time_step: Some(STEP), ..PrepareOptions::default() };
     let fixed = prepare(&positions, &given).unwrap();
@@ -470,7 +470,7 @@ fn more_channels_than_samples_are_refused_or_doubtful() {
 /// A joint that is held shakes with the noise of its encoder; a slow drift three times as large is motion.
 #[test]
 fn held_channels_are_named() {
-    let words = "z is held: noise is all that changes there";
+    let words = "z is held: only noise changes there";
     let jittery = |jitter: f64, motion: f64| {
         let mut recordings = changed(|episode| {
             let n = episode.n_samples();
@@ -574,7 +574,7 @@ proptest! {
             }
             self::prepared(&recordings)
         };
-        let words = "is the same wherever the hand is";
+        let words = "is the same everywhere";
         prop_assert_eq!(verdict(&of(sway, push), words), Verdict::Doubtful);
         // Pushed to either side, and not at all.
         prop_assert!(!says(&of(4.0, push), words));

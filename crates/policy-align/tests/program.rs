@@ -110,6 +110,21 @@ fn what_was_written_is_named_and_training_data_are_not_a_test() {
     assert_eq!(document["training_files"], serde_json::json!(["same-bytes.csv"]));
 }
 
+#[test]
+fn all_constraints_are_in_json_and_five_of_them_on_the_terminal() {
+    let rows = std::fs::read_to_string(folder().join("toy.csv")).unwrap();
+    let (head, rows) = rows.split_once('\n').unwrap();
+    let named = rows.lines().map(|row| format!("{row},rail {}\n", row.split(',').next().unwrap()));
+    std::fs::write(folder().join("named-rails.csv"), format!("{head},constraint\n{}", named.collect::<String>()))
+        .unwrap();
+    let out = run("evaluate toy.json named-rails.csv").out;
+    let document: Value = serde_json::from_str(&run("evaluate toy.json named-rails.csv --json").out).unwrap();
+    let all = document["constraints"].as_object().unwrap().len();
+    assert!(all > 5 && all == document["episodes"].as_array().unwrap().len(), "{all}");
+    assert_eq!(out.matches("constraint   rail ").count(), 5, "{out}");
+    assert!(out.contains(&format!("and {} more: --json shows all", all - 5)), "{out}");
+}
+
 /// One number, one meaning: 0 outside the data, where neither deviation nor potential is known.
 #[test]
 fn support_is_none_outside_the_data() {
@@ -156,7 +171,7 @@ fn errors_have_three_lines_and_a_code() {
         ("fit toy.csv --learner avto", 2, "auto"),
         ("fit toy.csv --bandwidth big", 2, "--bandwidth auto"),
         ("fit toy.csv --hold-out nobody", 2, "there is no episode 'nobody'"),
-        ("fit toy.csv --hold-out 0%", 2, "'0%' is no share of 40 episodes"),
+        ("fit toy.csv --hold-out 0%", 2, "'0%' is not a share of 40 episodes"),
         ("fit toy.csv --hold-out x%", 2, "as 20%"),
         ("plot toy.json --size 800", 2, "as 800x600"),
         ("plot toy.json --size 800x60", 2, "from 200 to 10000"),

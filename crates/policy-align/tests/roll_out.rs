@@ -348,7 +348,7 @@ fn constraint_files_say_what_is_wrong() {
     let one = ["x".to_owned()];
     let text = "[[constraint]]\nrobot = \"arm.urdf\"\nlink = \"hand\"\nplane = [1, 0, 0]";
     let said = ConstraintSet::from_toml(text, &one, folder.path()).unwrap_err().to_string();
-    assert!(said.contains("joint 'y' moves the link and is no channel of the state"), "{said}");
+    assert!(said.contains("joint 'y' moves the link but is not a channel of the state"), "{said}");
 }
 
 proptest! {

@@ -44,7 +44,7 @@ mod with_ros_2 {
         let example = help.lines().last().unwrap().trim().strip_prefix("policy-align ").unwrap();
         let ran = run(example);
         assert_eq!(ran.code, Some(0), "{}", ran.err);
-        let lines = ["/joint_states → /velocity_controller/commands: x, y", "stands: no joint state has come"];
+        let lines = ["/joint_states → /velocity_controller/commands: x, y", "stopped: no joint state received"];
         assert_eq!(ran.err.lines().collect::<Vec<_>>(), lines);
         assert!(ran.out.starts_with("commands     ") && ran.out.lines().count() == 1, "{}", ran.out);
     }

@@ -173,7 +173,7 @@ fn missing_joints_stop_and_are_named() {
         command.halt.unwrap()
     };
     assert_eq!(halt(&controller), Halt::NoState);
-    assert_eq!(halt(&controller).to_string(), "no joint state has come");
+    assert_eq!(halt(&controller).to_string(), "no joint state received");
     // Names without positions, as of a message of velocities alone.
     controller.observe(&words(&["x", "y"]), &[], NOW);
     assert_eq!(halt(&controller), Halt::Missing { joints: words(&["x", "y"]), found: vec![] });

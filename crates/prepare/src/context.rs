@@ -102,7 +102,7 @@ pub(crate) fn remark(demonstrations: &Demonstrations, context: &[StateChannel], 
     if different < FEW {
         notes.found(
             Verdict::Doubtful,
-            format!("{shown} in {episodes}: what is learnt at any other is a guess"),
+            format!("{shown} in {episodes}: the policy at any other is a guess"),
             format!("record movements with at least {FEW} different values of the context"),
         );
     } else if different < movements.len() {

@@ -45,14 +45,14 @@ pub enum PrepareError {
         factor: f64,
     },
     /// A time step that is not positive and finite.
-    #[error("--dt {time_step}: a time step must be a positive, finite number of seconds")]
+    #[error("--dt {time_step} is not positive and finite; give seconds between samples")]
     TimeStep {
         /// The time step given.
         time_step: f64,
     },
     /// A window that cannot smooth.
     #[error(
-        "--smooth: a window of {window} samples, {step} s apart; an odd number of at least 5, as in --smooth 9, or seconds, as in --smooth {:.2e}s", 9.0 * step
+        "--smooth: a window of {window} samples, {step} s apart; an odd number of at least 5, as in --smooth 9, or seconds, as in --smooth {}s", crate::numbers::short(9.0 * step)
     )]
     Smoothing {
         /// Samples in it.

@@ -3,10 +3,16 @@
 /// Squared errors below this, as shares, are as exact as recordings of four or five digits can show.
 const EXACT: f64 = 1e-8;
 
+/// Larger shares say nothing more.
+const MOST_PERCENT: f64 = 10_000.0;
+
 /// Three significant digits.
 pub fn short(value: f64) -> String {
-    if value == 0.0 || !value.is_finite() {
-        return format!("{value}");
+    if value == 0.0 {
+        return "0".to_owned();
+    }
+    if !value.is_finite() {
+        return value.to_string();
     }
     let exponent = value.abs().log10().floor() as i32;
     if !(-4..6).contains(&exponent) {
@@ -14,8 +20,7 @@ pub fn short(value: f64) -> String {
     }
     let digits = (2 - exponent).max(0) as usize;
     let text = format!("{value:.digits$}");
-    let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
-    if text == "-0" { "0".to_owned() } else { text.to_owned() }
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
 }
 
 /// A squared error as a share of what is predicted: three digits, or "exact".
@@ -30,8 +35,14 @@ pub fn percent(share: f64) -> String {
         0.0 => "0 %".to_owned(),
         size if size < 0.1 => "under 0.1 %".to_owned(),
         size if size < 10.0 => format!("{percent:.1} %"),
+        size if size >= MOST_PERCENT => format!("over {MOST_PERCENT} %"),
         _ => format!("{percent:.0} %"),
     }
+}
+
+/// An estimate of the share of a whole, which may exceed it, in percent.
+pub(crate) fn percent_of_all(share: f64) -> String {
+    percent(share.min(1.0))
 }
 
 /// "1 episode", "40 episodes".
@@ -55,7 +66,7 @@ mod tests {
             (0.000123456, "0.000123"),
             (1.5e-7, "1.50e-7"),
             (2.5e9, "2.50e9"),
-            (-0.0, "-0"),
+            (-0.0, "0"),
             (f64::NAN, "NaN"),
         ] {
             assert_eq!(short(value), expected);
@@ -78,6 +89,7 @@ mod tests {
 
     #[test]
     fn shares_are_percentages() {
+        assert_eq!(percent(1e30), "over 10000 %");
         for (share, expected) in
             [(0.0, "0 %"), (1e-5, "under 0.1 %"), (0.005, "0.5 %"), (0.0213, "2.1 %"), (0.158, "16 %"), (-0.2, "-20 %")]
         {

@@ -87,13 +87,14 @@ impl FromStr for Smoothing {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let seconds = text.strip_suffix('s').map(|number| number.trim().parse().ok().filter(|s: &f64| *s > 0.0));
+        let seconds =
+            text.strip_suffix('s').map(|number| number.trim().parse().ok().filter(|s: &f64| *s > 0.0 && s.is_finite()));
         let smoothing = match (text, seconds) {
             ("auto", _) => Some(Smoothing::Auto),
             ("off", _) => Some(Smoothing::Off),
             (_, Some(seconds)) => seconds.map(Smoothing::Seconds),
             (samples, None) => samples.parse().ok().map(Smoothing::Samples),
         };
-        smoothing.ok_or_else(|| format!("'{text}' is no window"))
+        smoothing.ok_or_else(|| format!("'{text}' is not a window"))
     }
 }

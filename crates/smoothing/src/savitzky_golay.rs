@@ -1,5 +1,5 @@
 use motion::{Demonstrations, Trajectory};
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 
 use crate::SmoothingError;
 use crate::error::require;
@@ -40,14 +40,15 @@ impl SavitzkyGolay {
         let n = trajectory.n_samples();
         let window = self.window.min(n);
         let degrees = self.degree + 1;
-        let even = weights(&Polynomials::even(window, degrees), window);
+        let even = Polynomials::even(window, degrees);
         let mut states = DMatrix::zeros(trajectory.dim(), n);
+        let mut weights = DVector::zeros(window);
         for i in 0..n {
             let first = i.saturating_sub(window / 2).min(n - window);
             let around = trajectory.states().columns(first, window);
-            let own =
-                trajectory.times().map(|times| weights(&Polynomials::at(&times[first..][..window], degrees), window));
-            around.mul_to(&own.as_ref().unwrap_or(&even).column(i - first), &mut states.column_mut(i));
+            let uneven = trajectory.times().map(|times| Polynomials::at(&times[first..][..window], degrees));
+            weigh(uneven.as_ref().unwrap_or(&even), i - first, &mut weights);
+            around.mul_to(&weights, &mut states.column_mut(i));
         }
         let smoothed = trajectory.with_states(states)?;
         Ok(match trajectory.velocities() {
@@ -63,7 +64,9 @@ impl SavitzkyGolay {
     }
 }
 
-/// (window, window): column i weighs the samples of a window for the value at its sample i, Q Q_iᵀ.
-fn weights(q: &Polynomials, window: usize) -> DMatrix<f64> {
-    DMatrix::from_fn(window, window, |j, i| q.values(j).iter().zip(q.values(i)).map(|(a, b)| a * b).sum())
+/// Weights of the samples of a window, (window), for the value at its sample i: Q Q_iᵀ.
+fn weigh(q: &Polynomials, i: usize, weights: &mut DVector<f64>) {
+    for (j, weight) in weights.iter_mut().enumerate() {
+        *weight = q.values(j).iter().zip(q.values(i)).map(|(a, b)| a * b).sum();
+    }
 }

@@ -15,11 +15,12 @@ pub fn slopes(movement: &Trajectory, points: usize) -> DMatrix<f64> {
     Polynomials::new(movement, points).slopes(|nearest, _| nearest)
 }
 
-/// The same; where the velocity jumps among those samples, through as many before or after the jump.
+/// As [`slopes`], (n, N), in positions per second; where the velocity jumps among those samples, of the polynomial through as many
+/// before or after the jump.
 pub fn slopes_between_switches(movement: &Trajectory, points: usize) -> DMatrix<f64> {
     let polynomials = Polynomials::new(movement, points);
     let (points, last) = (polynomials.points, movement.n_samples() - polynomials.points);
-    // Highest divided difference of the samples from each on: it tells a jump of the velocity.
+    // Highest divided difference of the samples from each on: large where the velocity jumps.
     let bends = polynomials.squared_bends();
     polynomials.slopes(|nearest, sample| {
         let beside = nearest.saturating_sub(points / 2)..=(nearest + points / 2).min(last);

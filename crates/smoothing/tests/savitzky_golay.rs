@@ -65,6 +65,16 @@ fn printed_weights() {
     }
 }
 
+/// Nearly all windows are the whole movement; the weights of all its samples at once would take 3 GB.
+#[test]
+fn a_window_may_be_as_long_as_a_long_movement() {
+    let n = 20_001;
+    let parabola = DMatrix::from_fn(1, n, |_, i| (i as f64 / n as f64 - 0.3).powi(2));
+    let recorded = Demonstrations::from_states([parabola.clone()], 1.0).unwrap();
+    let smoothed = SavitzkyGolay { window: n, degree: 2 }.smooth(&recorded).unwrap();
+    assert!((smoothed.trajectories()[0].states() - parabola).amax() < 1e-9);
+}
+
 proptest! {
     /// Polynomials of its degree pass at any stamps; on even ones nothing changes.
     #[test]

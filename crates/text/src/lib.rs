@@ -3,6 +3,7 @@
 //!
 //! - [`plain`]: for a terminal, a drawing or a comment.
 //! - [`quoted`]: a path in a command that is proposed.
+//! - [`three_lines`]: an error.
 //!
 //! ```
 //! use std::path::Path;
@@ -13,9 +14,11 @@
 
 mod plain;
 mod quoted;
+mod three_lines;
 
 pub use plain::{is_hidden, plain};
 pub use quoted::quoted;
+pub use three_lines::three_lines;
 
 /// The program of the README, compiled.
 #[cfg(doctest)]

@@ -59,7 +59,7 @@ impl Origin {
             (self.time_step > 0.0 && self.time_step.is_finite(), "the time step is not positive and finite"),
             (self.n_trajectories > 0, "it was learnt from no trajectory"),
             (kept.is_none_or(ascending), "the kept trajectories are not ascending numbers of those seen"),
-            (self.labels.is_empty() || self.labels.len() == dim, "there is not one label for each dimension"),
+            (self.labels.is_empty() || self.labels.len() == dim, "the number of labels is not that of the dimensions"),
         ];
         checks.into_iter().find(|(fine, _)| !fine).map_or(Ok(()), |(_, reason)| Err(reason))
     }

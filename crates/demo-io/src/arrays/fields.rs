@@ -258,7 +258,7 @@ fn refuse_other_kinds(array: &ArraySpec, place: &str) -> Result<(), ReadError> {
             return Err(ReadError::Pickled(Fault::new(what, place, remedy)));
         }
         Kind::Other(kind) => {
-            (format!("{kind}, which are no coordinates"), "save real numbers (float64), for records one array a field")
+            (format!("{kind}, which are not coordinates"), "save real numbers (float64), for records one array a field")
         }
     };
     Err(ReadError::Type(Fault::new(format!("'{name}' holds {what}"), place, remedy)))

@@ -193,7 +193,7 @@ impl ArrayReader<'_> {
             let steps: Vec<f64> = values.iter().map(|&value| if is_rate { 1.0 / value } else { value }).collect();
             if steps.is_empty() || steps.iter().any(|step| !(step.is_finite() && *step > 0.0)) {
                 let name = &self.arrays[field].name;
-                return Err(no_time(format!("{}, array '{name}' is no positive number", self.place()), "stamps"));
+                return Err(no_time(format!("{}, array '{name}' is not a positive number", self.place()), "stamps"));
             }
             return Ok(Some(steps));
         }

@@ -56,7 +56,11 @@ fn not_finite(draft: &RawEpisode, sample: usize, names: &[String], word: &str) -
     };
     let found = if value.is_nan() { "missing or NaN".to_owned() } else { format!("{value}") };
     let remedy = "--nan drop (leaves the sample out) or --nan fill (interpolates gaps of up to 3 samples)";
-    ReadError::NotFinite(Fault::new(format!("{what} is no finite number: {found}"), draft.place(sample, word), remedy))
+    ReadError::NotFinite(Fault::new(
+        format!("{what} is not a finite number: {found}"),
+        draft.place(sample, word),
+        remedy,
+    ))
 }
 
 /// Straight between the samples around a run, in time; only what is missing.

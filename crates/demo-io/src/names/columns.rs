@@ -1,7 +1,7 @@
 //! Columns of a block of numbers by role, as the user names them.
 
 use crate::names::selection::{flags, select};
-use crate::rows::roles::{no_column, shortened};
+use crate::rows::roles::{no_column, require_matching};
 use crate::{Fault, ReadError};
 
 /// Patterns of columns within a block, by role.
@@ -57,21 +57,7 @@ impl Chosen {
         } else {
             found(&asked.state)?.into_iter().filter(|index| !context.contains(index)).collect()
         };
-        if let Some(&both) = state.iter().find(|index| velocity.contains(index)) {
-            let what = format!("'{}' is named as state and as velocity", names[both]);
-            return Err(ReadError::AmbiguousColumn(Fault::new(
-                what,
-                place,
-                "--state and --velocity with other columns",
-            )));
-        }
-        if !velocity.is_empty() && velocity.len() != state.len() {
-            let (states, velocities) = (state.len(), velocity.len());
-            let what = format!("{states} columns of state but {velocities} of velocity");
-            let state: Vec<&str> = state.iter().map(|&index| &names[index][..]).collect();
-            let remedy = format!("--velocity with one column for each of {}", shortened(&state));
-            return Err(ReadError::NoRoles(Fault::new(what, place, remedy)));
-        }
+        require_matching(&state, &velocity, names, place)?;
         Ok(Chosen { state, velocity, context, time: time.first().copied(), columns: names.len() })
     }
 

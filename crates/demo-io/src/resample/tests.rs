@@ -48,9 +48,14 @@ proptest! {
         }
         let at = |t: f64| values[times.iter().rposition(|&stamp| stamp <= t).unwrap()];
         let made = recordings(times.clone(), at);
-        let found = resampled(&made, rate);
-        prop_assume!(found.is_ok());
-        let found = found.unwrap();
+        let duration = times[times.len() - 1];
+        let found = match resampled(&made, rate) {
+            Err(ResampleError::Short { .. }) => {
+                prop_assert!(duration * rate < 1.0 + 1e-6);
+                return Ok(());
+            }
+            found => found.unwrap(),
+        };
         let found = &found.episodes[0];
         prop_assert_eq!(found.velocities.as_ref(), Some(&found.positions));
         let last = found.times.duration();

@@ -1,5 +1,6 @@
 //! Files in pieces of whole movements.
 
+use std::fs;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
@@ -48,6 +49,11 @@ impl Piece {
         self.span.as_ref().is_none_or(|span| span.number == 0)
     }
 
+    /// How many bytes it has: of a part, of a file, or of all files in a folder.
+    pub fn bytes(&self) -> u64 {
+        self.span.as_ref().map_or_else(|| bytes_of(&self.path), Span::size)
+    }
+
     /// What messages call it: the file without folders, and where a part begins.
     pub fn name(&self) -> String {
         let name = name_of(&self.path);
@@ -58,6 +64,21 @@ impl Piece {
 impl AsRef<Path> for Piece {
     fn as_ref(&self) -> &Path {
         &self.path
+    }
+}
+
+/// How many bytes a file has, or all files in a folder; 0 if it cannot be read, which the reader complains of.
+pub fn bytes_of(path: &Path) -> u64 {
+    match fs::metadata(path) {
+        Ok(found) if found.is_dir() => {
+            let entries = fs::read_dir(path).into_iter().flatten().flatten();
+            // Links to folders may lead round in a circle.
+            let is_link = |entry: &fs::DirEntry| entry.file_type().is_ok_and(|kind| kind.is_symlink());
+            let inside = entries.filter(|entry| !is_link(entry) || entry.path().is_file());
+            inside.map(|entry| bytes_of(&entry.path())).sum()
+        }
+        Ok(found) => found.len(),
+        Err(_) => 0,
     }
 }
 

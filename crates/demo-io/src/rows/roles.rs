@@ -195,20 +195,31 @@ impl Roles {
     }
 
     fn checked(self, names: &[&str], place: &str) -> Result<Self, ReadError> {
-        let (states, velocities) = (self.state.len(), self.velocity.len());
-        if velocities != 0 && velocities != states {
-            let what = format!("{states} columns of state but {velocities} of velocity");
-            let state: Vec<&str> = self.state.iter().map(|&index| names[index]).collect();
-            let remedy = format!("--velocity with one column for each of {}", quoted(&state));
-            return Err(ReadError::NoRoles(Fault::new(what, place, remedy)));
-        }
-        if let Some(&both) = self.state.iter().find(|index| self.velocity.contains(index)) {
-            let what = format!("'{}' is named as state and as velocity", names[both]);
-            let remedy = "--state and --velocity with other columns";
-            return Err(ReadError::AmbiguousColumn(Fault::new(what, place, remedy)));
-        }
+        require_matching(&self.state, &self.velocity, names, place)?;
         Ok(self)
     }
+}
+
+/// Refuses velocities that are not one for each column of the state, or columns that are both.
+pub(crate) fn require_matching<S: AsRef<str>>(
+    state: &[usize],
+    velocity: &[usize],
+    names: &[S],
+    place: &str,
+) -> Result<(), ReadError> {
+    let name = |index: &usize| names[*index].as_ref();
+    if let Some(both) = state.iter().find(|index| velocity.contains(index)) {
+        let what = format!("'{}' is named as state and as velocity", name(both));
+        let remedy = "--state and --velocity with other columns";
+        return Err(ReadError::AmbiguousColumn(Fault::new(what, place, remedy)));
+    }
+    if !velocity.is_empty() && velocity.len() != state.len() {
+        let what = format!("{} columns of state but {} of velocity", state.len(), velocity.len());
+        let remedy =
+            format!("--velocity with one column for each of {}", quoted(&state.iter().map(name).collect::<Vec<_>>()));
+        return Err(ReadError::NoRoles(Fault::new(what, place, remedy)));
+    }
+    Ok(())
 }
 
 /// Two columns of one name, unless columns were chosen by number.

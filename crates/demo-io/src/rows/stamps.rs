@@ -157,7 +157,8 @@ fn split_zone(clock: &str) -> Option<(&str, i64)> {
     let sign = if zone.starts_with('-') { -1 } else { 1 };
     let digits: String = zone[1..].chars().filter(|&letter| letter != ':').collect();
     let (hours, minutes) = if digits.len() > 2 { digits.split_at_checked(2)? } else { (digits.as_str(), "0") };
-    Some((clock.trim_end(), sign * (number(hours)? * 3600 + number(minutes)? * 60)))
+    let (hours, minutes) = (number(hours)?, number(minutes)?);
+    (hours < 24 && minutes < 60).then(|| (clock.trim_end(), sign * (hours * 3600 + minutes * 60)))
 }
 
 /// Days from 1970 to a date of the Gregorian calendar (years counted from March, so that the leap day is the last).
@@ -225,6 +226,9 @@ mod tests {
             "2023-11-14 22",
             "é-1-1 1:1",
             "1-1-1 1:1+é",
+            "2023-11-14 22:13:20+24:00",
+            "2023-11-14 22:13:20+01:60",
+            "2023-11-14 22:13:20+0099999999999999999",
             "14.13.2023 1:00",
             "32.1.2023 1:00",
             "2023.11.14 1:00",

@@ -19,6 +19,9 @@ use motion::Recordings;
 /// Stamp of the first sample: 0 would mean that a driver left it out.
 const START: u64 = 1_000_000_000;
 
+/// The last second that a stamp of ROS 2 holds, in nanoseconds.
+const LATEST: u64 = i32::MAX as u64 * 1_000_000_000;
+
 /// Nanoseconds without a message between two movements, so that programs see them apart.
 const PAUSE: u64 = 5_000_000_000;
 
@@ -37,7 +40,8 @@ pub(super) fn write(file: impl Write, recordings: &Recordings, robot: Option<&dy
     for episode in &recordings.episodes {
         let mut stamp = start;
         for (sample, time) in episode.times.stamps().iter().enumerate() {
-            stamp = start + (time * 1e9).round() as u64;
+            stamp = at(start, *time)
+                .ok_or_else(|| WriteError::TooLong { episode: episode.name.clone(), seconds: *time })?;
             if let Some(robot) = robot {
                 let transforms = robot.transforms(episode.positions.column(sample));
                 let transforms = transforms.map_err(|reason| {
@@ -52,6 +56,12 @@ pub(super) fn write(file: impl Write, recordings: &Recordings, robot: Option<&dy
     }
     bag.finish(METADATA, &metadata(recordings)?)?;
     Ok(())
+}
+
+/// The stamp so many seconds after another; none beyond the largest of ROS 2, whose seconds are 32-bit integers.
+fn at(start: u64, seconds: f64) -> Option<u64> {
+    let stamp = start.checked_add((seconds * 1e9).round() as u64)?;
+    (stamp <= LATEST).then_some(stamp)
 }
 
 fn joint_message(recordings: &Recordings, episode: &motion::Episode, sample: usize, stamp: u64) -> Vec<u8> {

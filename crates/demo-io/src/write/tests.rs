@@ -79,3 +79,19 @@ fn a_wrong_number_of_names_is_refused() {
     let refused = read(&path, &options, &mut |_| ()).unwrap_err().to_string();
     assert!(refused.contains("'names'") && refused.contains("3 samples where 10 are expected"), "{refused}");
 }
+
+/// Seconds of ROS 2 are 32-bit integers: stamps that would wrap are refused.
+#[cfg(feature = "mcap")]
+#[test]
+fn stamps_that_ros_cannot_hold_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.mcap");
+    for (last, fits) in [(0.4, true), (2.1e9, true), (2.2e9, false), (2e10, false), (1e300, false)] {
+        let mut made = recordings(&["x"]);
+        *made.episodes[0].times.stamps_mut().last_mut().unwrap() = last;
+        match write(&path, &made) {
+            Ok(()) => assert!(fits, "{last}"),
+            Err(error) => assert!(!fits && matches!(error, WriteError::TooLong { .. }), "{last}: {error}"),
+        }
+    }
+}

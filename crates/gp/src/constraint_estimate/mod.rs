@@ -4,9 +4,9 @@
 //! A and b do. Both together tell the rows of A: a velocity that does not vary may never have been wanted, and what the policy
 //! wants in vain may be its error.
 
-mod hypothesis;
 mod spaces;
 mod stretch_estimate;
+mod stretch_kind;
 mod view;
 mod wanted;
 
@@ -23,9 +23,9 @@ use crate::stretches::partition::{Part, SPARE, cheapest_parts, known_part};
 use crate::stretches::segmentation::PARAMETER;
 use crate::stretches::{MOST_DIMENSIONS, centred, evenly, parts};
 use crate::{GpError, Rows};
-use hypothesis::{Hypothesis, Movement};
 use spaces::rarity;
 use stretch_estimate::canonical;
+use stretch_kind::{Movement, StretchKind};
 use view::{Disagreement, SHARED, View};
 use wanted::Wanted;
 
@@ -109,7 +109,7 @@ fn noise(rows: &Rows, movements: &[&[usize]], spaces: &[TaskSpace]) -> Option<f6
 struct Parts {
     rows: Vec<usize>,
     movement: Movement,
-    found: Vec<Part<Hypothesis>>,
+    found: Vec<Part<StretchKind>>,
 }
 
 struct Search<'a> {
@@ -142,7 +142,7 @@ impl Search<'_> {
     }
 
     /// The row at which the part after a switch begins: the best of all that lie between the two rows that were searched.
-    fn switch(&self, parts: &Parts, (left, right): (&Part<Hypothesis>, &Part<Hypothesis>), least: f64) -> usize {
+    fn switch(&self, parts: &Parts, (left, right): (&Part<StretchKind>, &Part<StretchKind>), least: f64) -> usize {
         let (last, first) = (parts.rows[left.end - 1], parts.rows[right.begin]);
         let between = last + 1..first;
         let mut rows = parts.rows[left.begin..left.end].to_vec();
@@ -195,7 +195,7 @@ impl Search<'_> {
         stretches
     }
 
-    fn stretch(&self, parts: &Parts, part: &Part<Hypothesis>, found: bool) -> StretchEstimate {
+    fn stretch(&self, parts: &Parts, part: &Part<StretchKind>, found: bool) -> StretchEstimate {
         let Parts { rows, movement, .. } = parts;
         let index = |at: usize| self.rows.indices()[rows[at]];
         // Known switches are where they are said to be, even if a few samples beside them do not fit.
@@ -215,7 +215,7 @@ impl Search<'_> {
             hidden: DMatrix::zeros(dim, 0),
         };
         let inside = &rows[part.begin..part.end];
-        if let (Some((view, directions, rank)), Hypothesis::Constrained { space, .. }) =
+        if let (Some((view, directions, rank)), StretchKind::Constrained { space, .. }) =
             (movement.constraint(part), part.kind)
         {
             let change = view.change((part.begin, part.end), &directions, rank, &movement.disagreement);
@@ -244,7 +244,7 @@ impl Search<'_> {
     }
 
     /// What a stretch without a constraint is: one that follows the policy, or one where the policy does not want to move.
-    fn without(&self, parts: &Parts, part: &Part<Hypothesis>) -> Acting {
+    fn without(&self, parts: &Parts, part: &Part<StretchKind>) -> Acting {
         let seen = |at: usize| {
             let wanted = self.wanted.actions.column(parts.rows[at]).norm_squared();
             wanted * parts.movement.disagreement.weights[at] > SEEN * self.rows.dim() as f64
@@ -273,7 +273,7 @@ impl Search<'_> {
 
 /// What a constraint in each space costs by the parts that have one.
 fn rarity_of(parts: &[Parts], spaces: usize) -> Vec<f64> {
-    let constrained = |part: &&Part<Hypothesis>| part.kind != Hypothesis::Free;
+    let constrained = |part: &&Part<StretchKind>| part.kind != StretchKind::Free;
     let of = |of: &Parts| -> Vec<Vec<f64>> {
         of.found.iter().filter(constrained).map(|part| of.movement.costs_in_spaces(part)).collect()
     };
@@ -282,11 +282,11 @@ fn rarity_of(parts: &[Parts], spaces: usize) -> Vec<f64> {
 
 impl Parts {
     /// The parts found, and what lies between them if it is long enough to say that it is in none; whether it was found.
-    fn with_gaps(&self) -> Vec<(Part<Hypothesis>, bool)> {
+    fn with_gaps(&self) -> Vec<(Part<StretchKind>, bool)> {
         let ends = self.found.iter().map(|part| part.end);
         let begins = self.found.iter().map(|part| part.begin).chain([self.rows.len()]);
         let gaps = std::iter::once(0).chain(ends).zip(begins).filter(|(end, begin)| end + SPARE <= *begin);
-        let gaps = gaps.map(|(begin, end)| (Part { begin, end, kind: Hypothesis::Free }, false));
+        let gaps = gaps.map(|(begin, end)| (Part { begin, end, kind: StretchKind::Free }, false));
         let mut all: Vec<_> = self.found.iter().map(|&part| (part, true)).chain(gaps).collect();
         all.sort_by_key(|(part, _)| part.begin);
         all

@@ -7,7 +7,7 @@ use crate::inducing::Induced;
 use crate::kernel::direct_block::{DirectBlock, DirectCovariance};
 use crate::kernel::triangle::Upper;
 use crate::kernel::whitening::Whitening;
-use crate::left_out::LeftOut;
+use crate::left_out::LeftOutPredictions;
 use crate::left_out::level::Conditions;
 use crate::rows::kept::Kept;
 use crate::rows::noise_weights::direct_weights;
@@ -122,7 +122,12 @@ impl DirectData {
     ///
     /// # Panics
     /// If there is not one θ a block and one more.
-    pub fn condition(&self, blocks: &[DirectBlock], theta: &[f64], kappa: f64) -> Option<(DirectModel, LeftOut)> {
+    pub fn condition(
+        &self,
+        blocks: &[DirectBlock],
+        theta: &[f64],
+        kappa: f64,
+    ) -> Option<(DirectModel, LeftOutPredictions)> {
         let fit = FamilyFit::at(&self.covariance(blocks), theta, kappa, &self.conditions())?;
         let left_out = fit.level.left_out.clone();
         Some((self.model(blocks.to_vec(), fit), left_out))
@@ -146,7 +151,7 @@ impl DirectData {
         &self,
         (blocks, amplitudes): (&[DirectBlock], &[f64]),
         most: usize,
-    ) -> Option<(DirectModel, LeftOut)> {
+    ) -> Option<(DirectModel, LeftOutPredictions)> {
         let Induced { rows, noise, weights, factor, shrinkage, left_out, .. } =
             Induced::new(&self.covariance(blocks), amplitudes, &self.conditions(), most)?;
         let scaled = (self.scaling.clone(), self.unit);

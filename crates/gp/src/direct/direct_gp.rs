@@ -6,7 +6,7 @@ use crate::direct::data::DirectData;
 use crate::direct::model::DirectModel;
 use crate::evidence::family_fit::{FamilyFit, each_until_exact};
 use crate::kernel::family::Family;
-use crate::left_out::LeftOut;
+use crate::left_out::{LeftOutPredictions, poorly_predicted};
 use crate::rows::kept::{Kept, Selection};
 use crate::{GpError, Rows};
 
@@ -49,7 +49,7 @@ pub struct DirectFit {
 pub(crate) struct DirectOutcome {
     data: DirectData,
     pub(crate) fit: DirectFit,
-    pub(crate) left_out: LeftOut,
+    pub(crate) left_out: LeftOutPredictions,
     /// û at the rows, (n, M).
     pub(crate) actions: DMatrix<f64>,
 }
@@ -127,12 +127,6 @@ impl DirectFit {
 
     /// Warnings about the policy, one sentence each.
     pub fn doubts(&self) -> Vec<String> {
-        match self.r_squared {
-            r2 if r2 < 0.5 => {
-                vec![format!("left-out movements are not predicted (R² {r2:.2}): do not use this policy")]
-            }
-            r2 if r2 < 0.9 => vec![format!("left-out movements are predicted poorly (R² {r2:.2})")],
-            _ => Vec::new(),
-        }
+        poorly_predicted(self.r_squared).into_iter().collect()
     }
 }

@@ -5,7 +5,7 @@ use crate::evidence::lbfgs::{Bounds, ITERATIONS, minimise};
 use crate::evidence::{Task, Workspace};
 use crate::kernel::covariance::Covariance;
 use crate::kernel::family::Family;
-use crate::left_out::LeftOut;
+use crate::left_out::LeftOutPredictions;
 use crate::left_out::level::{Conditions, Level};
 
 /// A family with amplitudes by marginal likelihood and noise raised by held-out prediction.
@@ -105,7 +105,7 @@ impl<'a, C: Covariance> Search<'a, C> {
 pub(crate) fn each_until_exact<T: Send>(
     families: &[Family],
     attempt: impl Fn(Family) -> Option<T> + Sync,
-    left_out: impl Fn(&T) -> &LeftOut,
+    left_out: impl Fn(&T) -> &LeftOutPredictions,
 ) -> Vec<(Family, Option<T>)> {
     let Some((&first, others)) = families.split_first() else { return Vec::new() };
     let mut tried = vec![(first, attempt(first))];

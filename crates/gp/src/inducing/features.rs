@@ -10,7 +10,7 @@ use crate::kernel::covariance::Covariance;
 use crate::kernel::factor::{view, view_mut};
 use crate::left_out::level::Conditions;
 
-/// A prior, the rows that stand for all, and what all are to be conditioned on.
+/// A prior, the rows that represent all, and what all are to be conditioned on.
 #[derive(Debug)]
 pub(crate) struct Features<'a, C> {
     pub(crate) covariance: &'a C,

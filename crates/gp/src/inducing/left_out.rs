@@ -7,7 +7,7 @@ use crate::inducing::features::Features;
 use crate::inducing::spectrum::Spectrum;
 use crate::kernel::covariance::Covariance;
 use crate::kernel::factor::{Factor, add_product_below, view};
-use crate::left_out::LeftOut;
+use crate::left_out::LeftOutPredictions;
 
 /// Rows whose features are at hand together.
 const TOGETHER: usize = 2048;
@@ -56,7 +56,7 @@ impl<C: Covariance> Leaving<'_, C> {
     /// Each of these groups predicted without itself; the numbers are of their rows, in this order. `spread` is Σ w|y|² of them, or
     /// about whatever is predicted without a model. Costs min(m, n_t) n_t m for each, with all features computed once or, of long
     /// groups, twice.
-    pub(crate) fn each(&self, groups: &Groups<'_>, spread: f64) -> Option<LeftOut> {
+    pub(crate) fn each(&self, groups: &Groups<'_>, spread: f64) -> Option<LeftOutPredictions> {
         let products = |at: usize| groups.products.as_ref().map(|products| &products[at]);
         let group = |(at, rows): (usize, &&[usize])| self.group(rows, products(at));
         let each: Vec<Group> = groups.rows.par_iter().enumerate().map(group).collect::<Option<_>>()?;
@@ -68,7 +68,7 @@ impl<C: Covariance> Leaving<'_, C> {
             variances.extend(of);
         }
         let weights: Vec<f64> = rows.iter().map(|&row| self.features.conditions.noise_weights[row]).collect();
-        LeftOut::of(residuals, variances, &weights, spread)
+        LeftOutPredictions::of(residuals, variances, &weights, spread)
     }
 
     fn group(&self, rows: &[usize], products: Products<'_>) -> Option<Group> {

@@ -14,7 +14,7 @@ use crate::inducing::pivots::pivots;
 use crate::inducing::spectrum::Spectrum;
 use crate::kernel::covariance::{Covariance, NOISE_FLOOR, among, jittered};
 use crate::kernel::factor::Factor;
-use crate::left_out::LeftOut;
+use crate::left_out::LeftOutPredictions;
 use crate::left_out::level::{Conditions, climb, kappas, raised};
 use crate::rows::thinning::every_so_many;
 
@@ -38,7 +38,7 @@ pub(crate) struct Induced {
     /// Of (S37).
     pub(crate) shrinkage: DMatrix<f64>,
     /// Of all rows.
-    pub(crate) left_out: LeftOut,
+    pub(crate) left_out: LeftOutPredictions,
 }
 
 impl Induced {

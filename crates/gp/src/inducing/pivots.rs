@@ -1,4 +1,4 @@
-//! Which rows stand for all: pivoted Cholesky (S34).
+//! Which rows represent all: pivoted Cholesky (S34).
 
 use faer::linalg::matmul::matmul;
 use faer::{Accum, MatRef, Par};
@@ -16,7 +16,7 @@ const TOGETHER: usize = 256;
 /// Share of the largest prior variance below which a row follows from those chosen.
 const DEPENDENT: f64 = 1e-13;
 
-/// In the order of the choice, at most `most` rows that stand for all, the one with the largest variance given those before it first, ties to the earlier one.
+/// In the order of the choice, at most `most` rows that represent all, the one with the largest variance given those before it first, ties to the earlier one.
 ///
 /// Candidates are the first rows of trajectories, which are at the rim of what was recorded, as far as they are not more than
 /// half of all candidates, and one row of each of equally many stretches of the others. Costs most² times as many candidates.

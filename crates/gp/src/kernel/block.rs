@@ -28,7 +28,8 @@ impl Block {
         !matches!(self, Block::Skew | Block::DivergenceFree(_))
     }
 
-    /// (S3): covariance of the slopes along `n` at `z` and along `n2` at `z2`.
+    /// (S3): covariance of the slopes along `n` at `z` and along `n2` at `z2`; scaled states with their context, (n + p), and unit
+    /// directions, (n).
     pub fn slope_slope(
         self,
         z: DVectorView<'_, f64>,
@@ -50,7 +51,8 @@ impl Block {
         }
     }
 
-    /// Covariance of the policy at `z` and the slope along `n2` at `z2`: (S3) with `n` each unit vector in turn, (n).
+    /// Covariance of the policy at `z` and the slope along `n2` at `z2`: (S3) with `n` each unit vector in turn, (n); shapes as in
+    /// [`Block::slope_slope`].
     pub fn policy_slope(
         self,
         z: DVectorView<'_, f64>,
@@ -71,7 +73,7 @@ impl Block {
     }
 
     /// (S4): covariance of the potential at `z`, in scaled coordinates, and the slope along `n2` at `z2`; none if there
-    /// is no potential.
+    /// is no potential. Shapes as in [`Block::slope_slope`].
     pub fn potential_slope(
         self,
         z: DVectorView<'_, f64>,
@@ -90,7 +92,7 @@ impl Block {
         }
     }
 
-    /// (S5): covariance of the potential at `z` and at `z2`; none if there is no potential.
+    /// (S5): covariance of the potential at `z` and at `z2`, (n + p) each, in scaled coordinates; none if there is no potential.
     pub fn potential_potential(self, z: DVectorView<'_, f64>, z2: DVectorView<'_, f64>) -> Option<f64> {
         match self {
             Block::Linear => Some(z.dot(&z2)),

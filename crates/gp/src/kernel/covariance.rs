@@ -27,7 +27,7 @@ pub(crate) fn add_noise(matrix: &mut DMatrix<f64>, noise: f64, noise_weights: im
     for (i, weight) in noise_weights.enumerate() {
         matrix[(i, i)] += (noise + NOISE_FLOOR) * weight;
     }
-    let jitter = 1e-12 * (0..count).map(|i| matrix[(i, i)]).sum::<f64>() / count as f64;
+    let jitter = JITTER * (0..count).map(|i| matrix[(i, i)]).sum::<f64>() / count as f64;
     for i in 0..count {
         matrix[(i, i)] += jitter;
     }

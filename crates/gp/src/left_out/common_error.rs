@@ -3,7 +3,7 @@
 use nalgebra::DMatrix;
 
 use crate::kernel::covariance::NOISE_FLOOR;
-use crate::left_out::LeftOut;
+use crate::left_out::LeftOutPredictions;
 
 /// (nᵀn')² from which two rows see nearly the same component of the policy.
 const SAME: f64 = 0.5;
@@ -14,12 +14,12 @@ const SAME: f64 = 0.5;
 /// `n` are the rows' directions, (n, M), `noise` is σ² without the floor, with the weights D, (M), `groups` the rows of each movement in the
 /// order of time.
 pub(crate) fn common_error(
-    left_out: &LeftOut,
+    left_out: &LeftOutPredictions,
     n: &DMatrix<f64>,
     (noise, noise_weights): (f64, &[f64]),
     groups: &[Vec<usize>],
 ) -> f64 {
-    let LeftOut { residuals, variances, .. } = left_out;
+    let LeftOutPredictions { residuals, variances, .. } = left_out;
     let posterior = |row: usize| (variances[row] - (noise + NOISE_FLOOR) * noise_weights[row]).max(0.0);
     // The floor is no noise that there is.
     let predictive = |row: usize| posterior(row) + noise * noise_weights[row];
@@ -72,7 +72,7 @@ mod tests {
             }
             let n = DMatrix::from_fn(2, count, |k, _| if k == 0 { 1.0 } else { 0.0 });
             let groups: Vec<Vec<usize>> = (0..movements).map(|at| (at * rows..(at + 1) * rows).collect()).collect();
-            let left_out = LeftOut { residuals, variances: vec![1.0 + believed + NOISE_FLOOR; count], r_squared: 0.0, z_squared: 1.0 };
+            let left_out = LeftOutPredictions { residuals, variances: vec![1.0 + believed + NOISE_FLOOR; count], r_squared: 0.0, z_squared: 1.0 };
             let found = common_error(&left_out, &n, (believed, &vec![1.0; count]), &groups);
             let deviation = (2.0 * factor.powi(2) + own * (own + 2.0 * factor) / 2.0).sqrt() / (movements as f64).sqrt();
             prop_assert!((found - factor).abs() <= 6.0 * deviation, "{found} {factor}");
@@ -84,7 +84,7 @@ mod tests {
             let residuals = DMatrix::from_row_slice(8, 1, &values);
             let of = |n: &DMatrix<f64>, residuals: &DMatrix<f64>, groups: &[Vec<usize>]| {
                 let left_out =
-                    LeftOut { residuals: residuals.clone(), variances: vec![1.0; 8], r_squared: 0.0, z_squared: 1.0 };
+                    LeftOutPredictions { residuals: residuals.clone(), variances: vec![1.0; 8], r_squared: 0.0, z_squared: 1.0 };
                 common_error(&left_out, n, (0.5, &[1.0; 8]), groups)
             };
             let same = DMatrix::from_fn(3, 8, |k, _| if k == 0 { 1.0 } else { 0.0 });

@@ -13,8 +13,10 @@ pub(crate) fn t_of_mean(values: &[f64]) -> f64 {
 
 /// ε of (R7) and (S18): errors below this share count as none.
 pub(crate) const NEGLIGIBLE: f64 = 1e-4;
-/// t of the mean gain per trajectory from which one model of others' rows is better by more than chance.
-const LEAST_T: f64 = 2.5;
+/// Two models differ if their policies do by more than this share.
+pub(crate) const DIFFERS: f64 = 0.05;
+/// t of the mean gain per trajectory from which one model is better than another by more than chance.
+pub(crate) const LEAST_T: f64 = 2.5;
 /// Share of the left-out error that it may leave.
 const LEFT: f64 = 0.5;
 

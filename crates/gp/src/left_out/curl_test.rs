@@ -3,8 +3,8 @@
 use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
 
-use crate::left_out::LeftOut;
-use crate::left_out::comparison::{difference, t_of_mean};
+use crate::left_out::LeftOutPredictions;
+use crate::left_out::comparison::{DIFFERS, LEAST_T, difference, t_of_mean};
 
 /// Whether a model with rotation is tried beside those with a potential.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -17,10 +17,6 @@ pub enum CurlTest {
     AssumePotential,
 }
 
-/// t above which rotation is detected.
-const LEAST_T: f64 = 2.5;
-/// Two models differ if their policies do by more than this share.
-pub(crate) const DIFFERS: f64 = 0.05;
 /// Factor in held-out error by which a potential must be better to be kept.
 const BETTER: f64 = 1.1;
 
@@ -28,13 +24,18 @@ const BETTER: f64 = 1.1;
 #[derive(Debug)]
 pub(crate) struct Contender<'a> {
     pub(crate) actions: &'a DMatrix<f64>,
-    pub(crate) left_out: &'a LeftOut,
+    pub(crate) left_out: &'a LeftOutPredictions,
 }
 
 /// (S12): t of the gain per trajectory, gain_T = Σ w (e² with a potential − e² without), w = 1/D.
-pub(crate) fn curl_t(potential: &LeftOut, rotation: &LeftOut, noise_weights: &[f64], groups: &[Vec<usize>]) -> f64 {
+pub(crate) fn curl_t(
+    potential: &LeftOutPredictions,
+    rotation: &LeftOutPredictions,
+    noise_weights: &[f64],
+    groups: &[Vec<usize>],
+) -> f64 {
     let gain = |row: usize| {
-        let square = |left_out: &LeftOut| left_out.residuals.row(row).norm_squared();
+        let square = |left_out: &LeftOutPredictions| left_out.residuals.row(row).norm_squared();
         (square(potential) - square(rotation)) / noise_weights[row]
     };
     let gains: Vec<f64> = groups.iter().map(|rows| rows.iter().map(|&row| gain(row)).sum()).collect();
@@ -67,8 +68,8 @@ pub(crate) fn takes_rotation(t: f64, potential: &Contender<'_>, rotation: &Conte
 mod tests {
     use super::*;
 
-    fn left_out(r_squared: f64) -> LeftOut {
-        LeftOut { residuals: DMatrix::zeros(1, 1), variances: vec![1.0], r_squared, z_squared: 1.0 }
+    fn left_out(r_squared: f64) -> LeftOutPredictions {
+        LeftOutPredictions { residuals: DMatrix::zeros(1, 1), variances: vec![1.0], r_squared, z_squared: 1.0 }
     }
 
     /// The others' actions, and how much of the first's they differ by: not at all, 4.5 %, or all.

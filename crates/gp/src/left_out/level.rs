@@ -4,7 +4,7 @@ use nalgebra::DMatrix;
 
 use crate::kernel::covariance::{NOISE_FLOOR, add_noise};
 use crate::kernel::factor::Factor;
-use crate::left_out::{LeftOut, left_out};
+use crate::left_out::{LeftOutPredictions, left_out};
 
 /// Training data of a model.
 #[derive(Debug)]
@@ -31,7 +31,7 @@ pub(crate) struct Level {
     pub(crate) factor: Factor,
     /// K⁻¹y, (M, c).
     pub(crate) weights: DMatrix<f64>,
-    pub(crate) left_out: LeftOut,
+    pub(crate) left_out: LeftOutPredictions,
 }
 
 /// Factors by which noise is raised.
@@ -66,7 +66,10 @@ impl Level {
 
 /// The best of levels of rising noise by R², given up after two in a row that are not better, at one that is none, or where there
 /// is nothing to gain. None if already the first is none.
-pub(crate) fn climb<T>(mut levels: impl Iterator<Item = Option<T>>, left_out: impl Fn(&T) -> &LeftOut) -> Option<T> {
+pub(crate) fn climb<T>(
+    mut levels: impl Iterator<Item = Option<T>>,
+    left_out: impl Fn(&T) -> &LeftOutPredictions,
+) -> Option<T> {
     let mut best = levels.next()??;
     if left_out(&best).is_exact() {
         return Some(best);

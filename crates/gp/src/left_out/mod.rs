@@ -16,7 +16,7 @@ use crate::kernel::factor::{Factor, view, view_mut};
 
 /// Leave-one-trajectory-out predictions in closed form, (S10), (S11), (R3).
 #[derive(Debug, Clone, PartialEq)]
-pub struct LeftOut {
+pub struct LeftOutPredictions {
     /// y − its prediction without the row's trajectory, (M, c), scaled.
     pub residuals: DMatrix<f64>,
     /// Variance of that prediction, (M), scaled.
@@ -32,25 +32,25 @@ const EXACT: f64 = 1e-8;
 /// Held-out error below which differences between models are insignificant and a model's family is not in question.
 const NEARLY_EXACT: f64 = 1e-3;
 
-impl LeftOut {
+impl LeftOutPredictions {
     /// (S11) of residuals (M, c) and their variances (M); none if they are not finite.
     pub(crate) fn of(
         residuals: DMatrix<f64>,
         variances: Vec<f64>,
         noise_weights: &[f64],
         spread: f64,
-    ) -> Option<LeftOut> {
+    ) -> Option<LeftOutPredictions> {
         let squares: Vec<f64> = residuals.row_iter().map(|row| row.norm_squared()).collect();
         let weighted: f64 = squares.iter().zip(noise_weights).map(|(square, weight)| square / weight).sum();
         let standardised: f64 = squares.iter().zip(&variances).map(|(square, variance)| square / variance).sum();
         let r_squared = 1.0 - weighted / spread;
         let z_squared = standardised / residuals.len() as f64;
         let finite = r_squared.is_finite() && z_squared.is_finite();
-        finite.then_some(LeftOut { residuals, variances, r_squared, z_squared })
+        finite.then_some(LeftOutPredictions { residuals, variances, r_squared, z_squared })
     }
 
     /// The same with each row at its place among all: `rows` says which one stands where, (M).
-    pub(crate) fn at(self, rows: &[usize]) -> LeftOut {
+    pub(crate) fn at(self, rows: &[usize]) -> LeftOutPredictions {
         let mut placed = self.clone();
         for (at, &row) in rows.iter().enumerate() {
             placed.residuals.row_mut(row).copy_from(&self.residuals.row(at));
@@ -70,7 +70,16 @@ impl LeftOut {
     }
 }
 
-/// The same of a held-out R².
+/// What is said of a held-out R² that is low; none of others.
+pub(crate) fn poorly_predicted(r_squared: f64) -> Option<String> {
+    match r_squared {
+        r2 if r2 < 0.5 => Some(format!("left-out movements are not predicted (R² {r2:.2}): do not use this policy")),
+        r2 if r2 < 0.9 => Some(format!("left-out movements are predicted poorly (R² {r2:.2})")),
+        _ => None,
+    }
+}
+
+/// Whether a held-out R² is so large that it does not decide between models.
 pub(crate) fn is_nearly_exact(r_squared: f64) -> bool {
     1.0 - r_squared <= NEARLY_EXACT
 }
@@ -85,7 +94,7 @@ pub(crate) fn left_out(
     groups: &[Vec<usize>],
     noise_weights: &[f64],
     spread: f64,
-) -> Option<LeftOut> {
+) -> Option<LeftOutPredictions> {
     let x = factor.inverse_triangle();
     let blocks: Vec<_> = groups.par_iter().map(|rows| block(&x, weights, rows)).collect();
     let mut residuals = DMatrix::zeros(weights.nrows(), weights.ncols());
@@ -97,7 +106,7 @@ pub(crate) fn left_out(
             variances[row] = block_variances[at];
         }
     }
-    LeftOut::of(residuals, variances, noise_weights, spread)
+    LeftOutPredictions::of(residuals, variances, noise_weights, spread)
 }
 
 /// e_T and the diagonal of V_T.

@@ -2,7 +2,7 @@
 
 /// New movements whose error is expected.
 const MOVEMENTS: i32 = 30;
-/// Smallest value, over their mean, that is told from 0.
+/// Smallest value, over their mean, that is distinguished from 0.
 const LEAST: f64 = 1e-12;
 /// log t from, to and by which (S43) is summed: the integrand and its derivatives vanish at both ends.
 const RANGE: (f64, f64) = (-20.0, 34.0);

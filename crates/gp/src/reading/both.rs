@@ -17,7 +17,7 @@ pub(crate) struct Both {
 }
 
 /// Left-out errors of trajectories, and of rows.
-pub(crate) type LeftOut = (Vec<TrajectoryErrors>, Vec<LeftOutRow>);
+pub(crate) type LeftOutPredictions = (Vec<TrajectoryErrors>, Vec<LeftOutRow>);
 
 impl Both {
     /// Both on all rows, where that pays for slopes; as they are otherwise.
@@ -31,7 +31,7 @@ impl Both {
     }
 
     /// How they predict trajectories left out, on these rows; the slope GP of `pushed` in place of their own, if there is one.
-    pub(crate) fn compared(&self, pushed: Option<&Pushed>) -> (ReadingNumbers, LeftOut) {
+    pub(crate) fn compared(&self, pushed: Option<&Pushed>) -> (ReadingNumbers, LeftOutPredictions) {
         let Both { kept, slope, direct } = self;
         let actions = pushed.map(|pushed| pushed.outcome.taken.model.actions(&kept.states));
         let shares = pushed.map(|pushed| pushed.shares(&kept.trajectories()));

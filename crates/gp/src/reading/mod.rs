@@ -139,20 +139,20 @@ impl ReadingNumbers {
                 "Nothing in these demonstrations points to a hidden constraint: where they went, the policies that allow for one and that do not agree within {gap}. The slope policy is used: it predicts left-out movements far better (squared error {a_s} against {a_d}), as it can where movements descend a potential. A constraint that is the same in every demonstration cannot be seen in data."
             ),
             Hypothesis::Free => format!(
-                "Nothing in these demonstrations points to a hidden constraint: left-out movements are predicted from the place alone with an error of {p_d} of their variance, and the policy that allows for constraints agrees within {gap}. The direct policy is used. A constraint that is the same in every demonstration cannot be seen in data."
+                "Nothing in these demonstrations points to a hidden constraint: left-out movements are predicted from the state alone with an error of {p_d} of their variance, and the policy that allows for constraints agrees within {gap}. The direct policy is used. A constraint that is the same in every demonstration cannot be seen in data."
             ),
             Hypothesis::Constrained => format!(
-                "Constraints hid part of the policy, and they differed: knowing the direction a movement was let go in predicts its speed far better than the place alone (squared error {a_s} against {a_d}). The slope policy is used; about {hidden} of its length was hidden from view. Expected error {expected_nupe:.1e}."
+                "Constraints hid part of the policy, and they differed: the direction in which a movement was allowed to go predicts its speed far better than the state alone (squared error {a_s} against {a_d}). The slope policy is used; about {hidden} of its length was hidden from view. Expected error {expected_nupe:.1e}."
             ),
             Hypothesis::Ambiguous if self.gap <= SAME || self.shows_a_potential() => format!(
                 "Hardly anything ever moved along {}: either the policy does not, or it is always blocked there.",
                 direction(&self.least_seen.direction)
             ),
             Hypothesis::Ambiguous => format!(
-                "Two readings explain these demonstrations equally well. (a) Nothing was constrained: then the direct policy is right (used; left-out error {p_d}). (b) The same constraint acted always: then the policy is unknown across it, and the slope policy is one guess; the two differ by {gap}. Only you know: `--reading free` or `--reading constrained`, or record a few demonstrations that pass the same places in other directions.{few}"
+                "Two readings explain these demonstrations equally well. (a) Nothing was constrained: then the direct policy is right (used; left-out error {p_d}). (b) The same constraint acted always: then the policy is unknown across it, and the slope policy is one guess; the two differ by {gap}. Only you know: `--reading free` or `--reading constrained`, or record a few demonstrations that pass the same states in other directions.{few}"
             ),
             Hypothesis::Unexplained => format!(
-                "Neither reading predicts left-out movements (errors {p_d} and {a_s}). Too few demonstrations, too much noise, or the movement does not depend on the place alone (time, load, target).{} No policy should be trusted.",
+                "Neither reading predicts left-out movements (errors {p_d} and {a_s}). Too few demonstrations, too much noise, or the movement does not depend on the state alone (time, load, target).{} No policy should be trusted.",
                 if self.lambda >= 0.5 && !leans && !self.is_a_line() { " It leans towards constraints." } else { few }
             ),
             Hypothesis::TooFew => "Too few demonstrations to tell whether constraints acted: the direct policy is used; record at least five.".to_owned(),

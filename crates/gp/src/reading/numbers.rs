@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::Rows;
 use crate::direct::model::DirectModel;
-use crate::left_out::LeftOut;
+use crate::left_out::LeftOutPredictions;
 use crate::left_out::comparison::{NEGLIGIBLE, difference, log_ratio, t_of_mean};
 use crate::report::identifiability::LeastSeen;
 use crate::rows::kept::Grouping;
@@ -80,9 +80,9 @@ pub(crate) struct Compared<'a> {
     pub(crate) indices: &'a [SampleIndex],
     pub(crate) data: &'a SlopeData,
     /// Held-out predictions of the slope GP, and its policy at the rows, (n, M).
-    pub(crate) slope: (&'a LeftOut, &'a DMatrix<f64>),
+    pub(crate) slope: (&'a LeftOutPredictions, &'a DMatrix<f64>),
     /// The same of the direct GP.
-    pub(crate) direct: (&'a LeftOut, &'a DMatrix<f64>),
+    pub(crate) direct: (&'a LeftOutPredictions, &'a DMatrix<f64>),
     /// ū.
     pub(crate) direct_unit: f64,
     /// What the slope GP errs on each group, as a share of what was to predict, where it learnt from other rows than `data`.
@@ -138,8 +138,8 @@ impl ReadingNumbers {
     pub fn of(
         rows: &Rows,
         data: &SlopeData,
-        (slope, slope_left_out): (&SlopeModel, &LeftOut),
-        (direct, direct_left_out): (&DirectModel, &LeftOut),
+        (slope, slope_left_out): (&SlopeModel, &LeftOutPredictions),
+        (direct, direct_left_out): (&DirectModel, &LeftOutPredictions),
     ) -> Self {
         let speeds: Vec<f64> = rows.velocities().column_iter().map(|velocity| velocity.norm()).collect();
         Self::compared(&Compared {

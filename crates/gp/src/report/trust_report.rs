@@ -2,7 +2,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::kernel::block::Block;
 use crate::kernel::family::Family;
-use crate::left_out::is_nearly_exact;
+use crate::left_out::{is_nearly_exact, poorly_predicted};
 use crate::report::identifiability::{Identifiability, LeastSeen, direction};
 use crate::rows::kept::{Grouping, RowsDropped};
 
@@ -88,7 +88,7 @@ pub struct FamilyReport {
 pub struct FamilyNumbers {
     /// (S11).
     pub r_squared: f64,
-    /// κ: the factor on the noise variance that maximised the marginal likelihood.
+    /// κ: the factor on the noise variance with the largest held-out R² (section 4); 1 is the noise of the marginal likelihood.
     pub kappa: f64,
     /// Standard deviation of the noise, in units of the state per second.
     pub noise: f64,
@@ -110,12 +110,7 @@ impl TrustReport {
     /// Warnings about the policy, one sentence each.
     pub fn warnings(&self) -> Vec<String> {
         let mut warnings = Vec::new();
-        if self.r_squared < 0.5 {
-            let r2 = self.r_squared;
-            warnings.push(format!("left-out movements are not predicted (R² {r2:.2}): do not use this policy"));
-        } else if self.r_squared < 0.9 {
-            warnings.push(format!("left-out movements are predicted poorly (R² {:.2})", self.r_squared));
-        }
+        warnings.extend(poorly_predicted(self.r_squared));
         if self.z_squared > 4.0 {
             warnings.push(format!(
                 "errors are {:.1} times those expected: the noise model is wrong",
@@ -124,7 +119,7 @@ impl TrustReport {
         }
         if self.identifiability.warns() {
             warnings.push(format!(
-                "the demonstrations hardly let the direction {} be seen (posterior/prior variance {:.2}): what is shown there is the prior",
+                "the demonstrations hardly determine the policy along {} (posterior/prior variance {:.2}): it is mostly the prior there",
                 direction(&self.identifiability.direction),
                 self.identifiability.least
             ));

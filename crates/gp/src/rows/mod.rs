@@ -85,7 +85,7 @@ impl Rows {
         })
     }
 
-    /// Adds the context c of every row, (p, M): what the motion depends on and what stays as it is during a movement, such as a
+    /// Adds the context c of every row, (p, M): what the motion depends on and what is constant during a movement, such as a
     /// goal. It counts as further coordinates of the state along which nothing moves, so that it should spread about as much as the
     /// state ([`SlopeGp::context_factors`](crate::SlopeGp::context_factors)).
     ///

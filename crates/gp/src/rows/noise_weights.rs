@@ -14,7 +14,7 @@ pub(crate) fn slope_weights(variances: &[f64], speeds: &[f64], policy_lengths: &
 }
 
 /// (S18): D of slope rows whose velocities are certain, from the speeds r and the length of a policy there. What is not in
-/// the model, a small press or noise that nobody told of, changes slow rows most.
+/// the model, a small press or undeclared noise, changes slow rows most.
 pub(crate) fn certain_weights(speeds: &[f64], policy_lengths: &[f64]) -> Vec<f64> {
     let most = LONGEST * (speeds.iter().map(|r| r * r).sum::<f64>() / speeds.len() as f64).sqrt();
     relative(speeds.iter().zip(policy_lengths).map(|(r, g)| (g.min(most) / r).max(1.0).powi(2)).collect())

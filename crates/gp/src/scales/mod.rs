@@ -12,8 +12,8 @@ use rand::Rng;
 
 use crate::evidence::family_fit::FamilyFit;
 use crate::kernel::block::Block;
-use crate::left_out::LeftOut;
-use crate::left_out::comparison::{difference, much_better};
+use crate::left_out::LeftOutPredictions;
+use crate::left_out::comparison::{DIFFERS, difference, much_better};
 use crate::rows::kept::{Kept, Selection, rescaled, spreads};
 use crate::slope::data::SlopeData;
 use crate::slope::push_test::PushTest;
@@ -29,8 +29,6 @@ const ROWS: usize = 600;
 const HYPER_ROWS: usize = 300;
 /// Fits one after the other, each in the units that the one before found.
 const ROUNDS: usize = 6;
-/// Policies in both units differ by more than this share.
-const DIFFERS: f64 = 0.05;
 /// Scales that differ by less than this share are one.
 const SAME: f64 = 0.05;
 
@@ -72,7 +70,7 @@ impl Round {
         Some(Round { factors, velocities: kept.observed().clone(), data, blocks, fit })
     }
 
-    fn left_out(&self) -> &LeftOut {
+    fn left_out(&self) -> &LeftOutPredictions {
         &self.fit.level.left_out
     }
 

@@ -5,7 +5,7 @@ use nalgebra::DMatrix;
 use crate::evidence::family_fit::FamilyFit;
 use crate::kernel::block::Block;
 use crate::kernel::family::Family;
-use crate::left_out::LeftOut;
+use crate::left_out::LeftOutPredictions;
 use crate::left_out::curl_test::Contender;
 use crate::left_out::level::Level;
 use crate::report::trust_report::{FamilyNumbers, FamilyReport, ModelKind};
@@ -20,7 +20,7 @@ pub(crate) struct Candidate {
     pub(crate) family: Family,
     pub(crate) kind: ModelKind,
     pub(crate) model: SlopeModel,
-    pub(crate) left_out: LeftOut,
+    pub(crate) left_out: LeftOutPredictions,
     /// π̂ at the rows, (n, M).
     pub(crate) actions: DMatrix<f64>,
     /// σ² by evidence, and what it was raised by.

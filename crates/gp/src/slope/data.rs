@@ -8,7 +8,7 @@ use crate::kernel::covariance::Covariance;
 use crate::kernel::slope_covariance::SlopeCovariance;
 use crate::kernel::triangle::Upper;
 use crate::kernel::whitening::Whitening;
-use crate::left_out::LeftOut;
+use crate::left_out::LeftOutPredictions;
 use crate::left_out::level::{Conditions, Level, kappas};
 use crate::rows::kept::Kept;
 use crate::rows::scaling::Scaling;
@@ -134,7 +134,7 @@ impl SlopeData {
     ///
     /// # Panics
     /// If there is not one θ a block and one more.
-    pub fn condition(&self, blocks: &[Block], theta: &[f64], kappa: f64) -> Option<(SlopeModel, LeftOut)> {
+    pub fn condition(&self, blocks: &[Block], theta: &[f64], kappa: f64) -> Option<(SlopeModel, LeftOutPredictions)> {
         let fit = FamilyFit::at(&self.covariance(blocks), theta, kappa, &self.conditions())?;
         let left_out = fit.level.left_out.clone();
         Some((self.model(blocks.to_vec(), fit), left_out))
@@ -195,7 +195,7 @@ impl SlopeData {
         &self,
         (blocks, amplitudes): (&[Block], &[f64]),
         most: usize,
-    ) -> Option<(SlopeModel, LeftOut, f64)> {
+    ) -> Option<(SlopeModel, LeftOutPredictions, f64)> {
         let Induced { rows, kappa, noise, weights, factor, shrinkage, left_out } =
             Induced::new(&self.covariance(blocks), amplitudes, &self.conditions(), most)?;
         let scaled = (self.scaling.clone(), self.speed);

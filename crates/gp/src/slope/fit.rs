@@ -64,7 +64,8 @@ impl SlopeFit {
         self.model.covariance(state)
     }
 
-    /// φ̂(x) − φ̂(x₀) and its variance (S14); none if there is no potential.
+    /// φ̂(x) − φ̂(x₀), from x₀ = `from` to x, (n + p) each, in squared units of the state per second, and its variance (S14), not yet times
+    /// [`TrustReport::variance_factor`]; none if there is no potential.
     pub fn potential_difference(&self, x: DVectorView<'_, f64>, from: DVectorView<'_, f64>) -> Option<(f64, f64)> {
         self.model.potential_difference(x, from)
     }

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use crate::Rows;
 use crate::kernel::covariance::NOISE_FLOOR;
-use crate::left_out::LeftOut;
+use crate::left_out::LeftOutPredictions;
 use crate::left_out::common_error::common_error;
 use crate::left_out::comparison::{difference, spread};
 use crate::left_out::typical::typical_mean;
@@ -90,7 +90,7 @@ fn on_new_movements(data: &SlopeData, taken: &Candidate, noise: &[f64]) -> f64 {
 
 /// z² (S11) to expect on new movements (S43).
 fn standardised(data: &SlopeData, taken: &Candidate) -> f64 {
-    let LeftOut { residuals, variances, .. } = &taken.left_out;
+    let LeftOutPredictions { residuals, variances, .. } = &taken.left_out;
     let each = residuals.iter().zip(variances).map(|(residual, variance)| residual * residual / variance);
     of_movements(each.enumerate(), data)
 }

@@ -1,7 +1,6 @@
 //! Selects a policy where held-out movements cannot tell policies apart.
 
-use crate::left_out::comparison::difference;
-use crate::left_out::curl_test::DIFFERS;
+use crate::left_out::comparison::{DIFFERS, difference};
 use crate::rows::kept::Kept;
 use crate::slope::candidate::Candidate;
 use crate::slope::data::SlopeData;

@@ -26,7 +26,7 @@ pub struct SlopeGp {
     /// Largest number of rows; more are thinned evenly in time. Time grows with its cube, memory with its square; at
     /// most [`MOST_ROWS`](crate::MOST_ROWS).
     pub max_rows: usize,
-    /// Number of rows that stand for all where rows are thinned (S34): the model found on `max_rows` is fitted again to 1,500
+    /// Number of inducing rows, which represent all, where rows are thinned (S34): the model found on `max_rows` is fitted again to 1,500
     /// rows, and conditioned on all rows through these; whichever predicts held-out movements best is taken. Time grows
     /// with its square times the number of rows. 0: thinned rows alone.
     #[serde(default)]

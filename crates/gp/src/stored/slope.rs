@@ -51,7 +51,7 @@ impl TryFrom<SlopeRecord> for SlopeFit {
         let (rows, moving) = slope_gp.check(&directions, |_| 1)?;
         let dim = slope_gp.dim;
         if !directions.iter().all(|n| n.abs() <= 1.0 + 1e-9) {
-            return Err(stored("there is not one direction of length 1 a row"));
+            return Err(stored("the directions are not one of length 1 for each row"));
         }
         let scales = slope_gp.blocks.iter().map(|(block, _)| match block {
             Block::Potential(_, scale) | Block::DivergenceFree(scale) => *scale,

@@ -11,8 +11,8 @@ const LEAVES: f64 = 3.0;
 /// Samples before and after a place that show whether velocities jump there.
 const NEAR: usize = 8;
 
-/// The least rank of a plane that through 0 that holds all velocities, (n, N), of a movement up to noise, but no more than `most`, the largest of its
-/// segments, or 1; none if there is no such plane. A plane of more dimensions would hold two stretches of fewer.
+/// The least rank of a plane through 0 that holds all velocities, (n, N), of a movement up to noise, and no more than `most` (the largest of its
+/// segments) or 1; none if there is no such plane. A plane of more dimensions would hold two stretches of fewer.
 pub(super) fn whole(velocities: &DMatrix<f64>, most: usize, noise: f64) -> Option<usize> {
     let (dim, count) = velocities.shape();
     let mut eigenvalues = (velocities * velocities.transpose()).symmetric_eigenvalues().as_slice().to_vec();
@@ -26,7 +26,7 @@ pub(super) fn whole(velocities: &DMatrix<f64>, most: usize, noise: f64) -> Optio
     (1..=most.max(1).min(dim - 1)).filter(|rank| count >= rank + SPARE).find(|&rank| outside(rank) <= allowed(rank))
 }
 
-/// Whether velocities, (n, N), change at once: somewhere the squares that two lines in time leave, one of the samples before and one of those
+/// Whether velocities, (n, N), jump (S45): somewhere the squares that two lines in time leave, one of the samples before and one of those
 /// after, are less than half of what a cubic leaves, which has as many coefficients and leaves more than noise.
 pub(super) fn jumps(velocities: &DMatrix<f64>, noise: f64) -> bool {
     let polynomials = |count: usize, coefficients: usize| {

@@ -92,8 +92,8 @@ pub enum UrdfProblem {
     /// The axis has no direction.
     #[error("axis.xyz is zero and has no direction")]
     ZeroAxis,
-    /// The quaternion is zero and is no rotation.
-    #[error("origin.quat_xyzw is zero and is no rotation")]
+    /// The quaternion is zero, which is not a rotation.
+    #[error("origin.quat_xyzw is zero, which is not a rotation")]
     ZeroQuaternion,
     /// A type that URDF does not know.
     #[error("unknown joint type \"{found}\"; types are revolute, continuous, prismatic and fixed")]

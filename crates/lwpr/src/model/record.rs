@@ -235,7 +235,7 @@ impl TryFrom<ModelRecord> for Lwpr {
             return Err(corrupt(format!("a field of {} inputs in a model of {}", field.centre.len(), record.n_in)));
         }
         if record.n_data > MOST_SAMPLES || record.outputs.iter().any(|output| output.n_pruned > MOST_SAMPLES) {
-            return Err(corrupt("more samples than anybody has".to_owned()));
+            return Err(corrupt("a number of samples is out of range".to_owned()));
         }
         let settings = Settings::new(record.params, record.n_in, record.n_out)?;
         let mut outputs = Vec::new();
@@ -243,9 +243,9 @@ impl TryFrom<ModelRecord> for Lwpr {
             let mut sub_model = SubModel { n_pruned: output.n_pruned, ..SubModel::default() };
             let mut table = ActivationTable::default();
             for (k, field) in output.fields.iter().enumerate() {
-                let field = field.restore(&settings).ok_or_else(|| {
-                    corrupt(format!("output {o}, field {k}: a wrong number of numbers, or one that cannot be"))
-                })?;
+                let field = field
+                    .restore(&settings)
+                    .ok_or_else(|| corrupt(format!("output {o}, field {k}: wrong length, or a value out of range")))?;
                 table.set(&settings, k, &field);
                 sub_model.fields.push(field);
             }

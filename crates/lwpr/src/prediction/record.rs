@@ -24,7 +24,7 @@ impl PredictorRecord {
         let checks = [
             (self.cutoff >= 0.0, "the cutoff is not a number from 0 on"),
             (positive(&self.norm_in) && positive(&self.norm_out), "a norm is not positive and finite"),
-            (self.outputs.len() == self.norm_out.len(), "there is not one list of fields an output"),
+            (self.outputs.len() == self.norm_out.len(), "the number of lists of fields is not that of the outputs"),
             (models().all(|model| model.has_shape(n)), "a field has not the shape of the inputs"),
             (self.outputs.iter().all(|models| have_one_shape(models)), "some fields turn, others do not"),
             (

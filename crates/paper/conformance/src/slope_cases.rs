@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use anyhow::{Context as _, bail};
-use gp::{Block, LeftOut, Rows, Shape, SlopeData, SlopeModel};
+use gp::{Block, LeftOutPredictions, Rows, Shape, SlopeData, SlopeModel};
 use motion::{Policy as _, Potential as _, SampleIndex};
 use nalgebra::{DMatrix, DVectorView};
 use serde::Deserialize;
@@ -151,7 +151,8 @@ pub(super) fn check_left_out(file: &Path) -> anyhow::Result<Vec<Agreement>> {
     let data = given.rows.data(&mut agreements[0])?;
     for case in &given.cases {
         let model = data.condition(&blocks(&case.blocks)?, &case.theta, case.kappa);
-        let (model, LeftOut { residuals, variances, r_squared, z_squared }) = model.context("no Cholesky factor")?;
+        let (model, LeftOutPredictions { residuals, variances, r_squared, z_squared }) =
+            model.context("no Cholesky factor")?;
         agreements[1].compare(residuals.iter().copied(), &case.residuals);
         agreements[1].compare(variances, &case.variances);
         agreements[1].compare(model.weights().iter().copied(), &case.alpha);

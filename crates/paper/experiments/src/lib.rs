@@ -72,7 +72,7 @@ pub struct Experiment {
     pub another_reading_of: Option<&'static str>,
     /// What has to be said beside the table of learners.
     pub comparisons_remark: Option<&'static str>,
-    /// Learners held against each other, a line for each error; empty where there is one learner alone.
+    /// Learners compared, a line for each error; empty where there is one learner alone.
     pub comparisons: Vec<Comparison>,
     /// What is measured, in the table's order.
     pub setups: Vec<Setup>,

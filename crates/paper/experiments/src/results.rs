@@ -46,7 +46,7 @@ impl Results {
         );
         let results: Results = serde_json::from_value(value).map_err(|error| anyhow!("{name} is damaged ({error})"))?;
         if let Some(text) = results.texts().into_iter().find(|text| !is_plain(text)) {
-            bail!("{name} is damaged ({text:?} is no name of a row or experiment and no command of a run)");
+            bail!("{name} is damaged ({text:?} is neither a name of a row or experiment nor a command of a run)");
         }
         Ok(results)
     }
@@ -211,7 +211,7 @@ mod tests {
         assert_eq!(file("parabola-40x40-narrow").unwrap().experiments.len(), 1);
         for row in ["|a|b|", "<script>alert(1)</script>", "$(rm -rf .)", "a\nb", "\u{1b}[2J", "`id`"] {
             let error = file(row).unwrap_err().to_string();
-            assert!(error.contains("is damaged") && error.contains("no name of a row"), "{row:?}: {error}");
+            assert!(error.contains("is damaged") && error.contains("neither a name of a row"), "{row:?}: {error}");
         }
     }
 }

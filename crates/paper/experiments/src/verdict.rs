@@ -1,4 +1,4 @@
-//! The one rule by which a figure of ours is held against the paper's.
+//! The rule that compares our figures with the paper's.
 
 use serde::{Deserialize, Serialize};
 

@@ -32,7 +32,7 @@ pub(super) const ERRORS: [Error; 3] = [
     Error { measure: Measure::PotentialNmse, name: "φ (nMSE)", color: "#4d4d4d", mark: Mark::Up },
 ];
 
-/// How the curves of a series are told from those of another.
+/// What distinguishes the curves of one series from those of another.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Style {
     dash: Dash,

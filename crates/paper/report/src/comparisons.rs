@@ -1,4 +1,4 @@
-//! Learners held against each other: a line for each error, a column for each learner.
+//! Learners compared: a line for each error, a column for each learner.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -123,7 +123,7 @@ impl ComparisonLine<'_> {
         (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
     }
 
-    /// Whose mean is the smallest; "automatic" and "no trend" are no learners of their own.
+    /// Whose mean is the smallest; "automatic" and "no trend" are not learners.
     pub(crate) fn least(&self) -> Method {
         let means = self.cells.iter().filter(|(who, _)| !matches!(who, Method::AutoGp | Method::SlopeGpNoTrend));
         let means = means.filter_map(|(who, _)| Some((*who, self.mean(*who)?)));

@@ -113,7 +113,7 @@ fn column<'a>(name: &str, show: fn(&Line<'a>) -> String) -> Column<'a> {
     (name.to_owned(), show)
 }
 
-/// What a printed cell is held against, and how it comes out.
+/// What a printed cell is compared with, and the verdict.
 fn judged<'a>() -> Vec<Column<'a>> {
     vec![
         column("measure", |line| line.measure.name().to_owned()),

@@ -27,7 +27,7 @@ def floats(values: Any, name: str) -> Floats:
     try:
         array = np.asarray(values)
     except ValueError as error:
-        raise TypeError(f"{name} is no array: {error}") from None
+        raise TypeError(f"{name} is not an array: {error}") from None
     if array.dtype.kind == "b":
         raise TypeError(f"{name} is a mask of booleans; numbers are needed, such as those that X[mask] selects")
     if array.dtype.kind not in "fiuO":

@@ -108,7 +108,7 @@ class Demonstrations:
             _same_length(listed_names, expected, what, "trajectories")
         _same_length(unit_names, width, "units", "columns")
         of_samples = [_labels(label, len(positions[k]), k) for k, label in enumerate(labels)]
-        step = None if stamps is not None else float(dt)  # type: ignore[arg-type]
+        step = None if stamps is not None else _seconds(dt)
         self._native = _native.Recordings.of(positions, speeds, (step, stamps), (names, channels), of_samples, unit_names)
 
     @classmethod
@@ -396,6 +396,16 @@ def _stamps(values: Any) -> Floats:
     if stamps.ndim != 1:
         raise PolicyAlignError(f"Expected 1D array, got {stamps.ndim}D array instead", "times", "one stamp a sample")
     return stamps
+
+
+def _seconds(dt: Any) -> float:
+    try:
+        seconds = float(dt)
+    except (TypeError, ValueError):
+        raise TypeError(f"dt is {dt!r}; a number of seconds is needed") from None
+    if not (0 < seconds < float("inf")):
+        raise PolicyAlignError(f"dt is {seconds:g}", "dt", "a positive, finite number of seconds")
+    return seconds
 
 
 def _same_length(given: Sequence[Any], expected: int, name: str, what: str) -> None:

@@ -69,15 +69,15 @@ class Learner(Estimator):
         random_state: Any = 1,
         n_jobs: int | None = None,
     ) -> None:
-        """``integration``: "auto", "velocity" (recorded ones are believed) or "displacement" (they are ignored). ``scale``:
+        """``integration``: "auto", "velocity" (recorded velocities are used) or "displacement" (they are ignored). ``scale``:
         factors of channels' units. ``smooth``, of positions: "auto", "off", a window of samples (9) or of seconds ("0.2s").
         ``jumps``: "auto" cuts movements where one step is far too long, "keep" does not. ``wraps``: with "auto" angles that
         jump by a whole turn go on instead and quaternions keep one sign, with "keep" they stay. ``context``: names of the
-        channels that a movement depends on and that stay as they are meanwhile, such as a goal; "auto" finds them by their
-        names, "none" takes none. ``max_rows``: samples that a policy is searched on, at most.
-        ``inducing``: samples that stand for all where more are recorded; 0 drops these. ``robot``: a URDF whose joints are named like the
+        channels that a movement depends on and that are constant during it, such as a goal; "auto" finds them by their
+        names, "none" takes none. ``max_rows``: samples on which Gaussian processes are selected, at most.
+        ``inducing``: samples that represent all if more are recorded; 0 drops the others. ``robot``: a URDF whose joints are named like the
         channels; constraints of the links at its ends are tried, and its mass matrix as the metric in which constraints are at right angles. ``random_state``: the seed,
-        a whole number; None is 1, the program's, and a generator of NumPy is asked for one. ``n_jobs``: threads, None or -1 for all; results do not depend on it.
+        a whole number; None is 1, like the program; a NumPy generator supplies one. ``n_jobs``: threads, None or -1 for all; results do not depend on it.
         """
         self._store(locals())
 

@@ -31,7 +31,7 @@ pub(crate) fn division(
     let size = |text: &str| {
         let remedy = format!("--at-once 256MB, 2GB or {}", Division::ALL);
         Division::bytes(text)
-            .ok_or_else(|| Failure::usage(format!("'{text}' is no size of files"), "--at-once", remedy))
+            .ok_or_else(|| Failure::usage(format!("'{text}' is not a size of files"), "--at-once", remedy))
     };
     let most = flags.at_once.as_deref().map(size).transpose()?;
     let whole = if flags.hold_out.is_empty() { options.needs_whole_recordings() } else { Some("--hold-out") };
@@ -52,7 +52,7 @@ pub(crate) fn division(
 pub(crate) fn shard(text: &str) -> Result<(usize, usize), Failure> {
     let numbers = text.split_once('/').and_then(|(this, of)| Some((this.parse().ok()?, of.parse().ok()?)));
     let shard = numbers.filter(|&(this, of): &(usize, usize)| (1..=of).contains(&this));
-    shard.ok_or_else(|| Failure::usage(format!("'{text}' is no share I/N with I up to N"), "--shard", "--shard 1/4"))
+    shard.ok_or_else(|| Failure::usage(format!("'{text}' is not a share I/N with I up to N"), "--shard", "--shard 1/4"))
 }
 
 /// Digests of all further pieces; those made here are kept in `unfinished`.

@@ -3,7 +3,7 @@ use std::path::Path;
 
 use demo_io::ReadError;
 use policy_align::{ConstraintFileError, FitError, ModelError, PrepareError};
-use text::quoted;
+use text::{quoted, three_lines};
 
 /// Exit codes, as `policy-align --help` lists them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -49,6 +49,10 @@ impl Failure {
     }
 
     pub(crate) fn writing(path: &Path, reason: impl fmt::Display) -> Self {
+        if let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty() && !folder.exists()) {
+            let remedy = format!("mkdir -p {}", quoted(folder));
+            return Failure::new(Exit::File, "cannot be written: its folder does not exist", displayed(path), remedy);
+        }
         let what = format!("cannot be written: {reason}");
         Failure::new(Exit::File, what, displayed(path), "-o with a path in a writable folder")
     }
@@ -120,8 +124,7 @@ impl From<ReadError> for Failure {
 
 impl fmt::Display for Failure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let line = |text: &str| text.lines().map(str::trim).collect::<Vec<_>>().join(" ");
-        write!(f, "error: {}\n  in:  {}\n  try: {}", line(&self.what), line(&self.place), line(&self.remedy))
+        f.write_str(&three_lines(&self.what, &self.place, &self.remedy))
     }
 }
 

@@ -39,7 +39,8 @@ pub(crate) fn read_pieces(
     pieces: &[Piece],
     flags: &ReadFlags,
 ) -> Result<(Recordings, ContextUse), Failure> {
-    let bar = session.bar(pieces.iter().map(bytes_of).sum(), "reading  {bar:30} {bytes} of {total_bytes}, {eta} left");
+    let bar =
+        session.bar(pieces.iter().map(Piece::bytes).sum(), "reading  {bar:30} {bytes} of {total_bytes}, {eta} left");
     let recordings = demo_io::read_pieces(pieces, &flags.options()?, &mut |read| bar.inc(read));
     bar.finish_and_clear();
     let (mut recordings, context) = recordings?;
@@ -101,12 +102,6 @@ pub(crate) fn known_episode<S: AsRef<str>>(
     let some: Vec<&str> = known.iter().take(5).map(AsRef::as_ref).collect();
     let remedy = format!("one of {}, …", some.join(", "));
     Err(Failure::usage(format!("there is no episode '{name}'"), format!("{flag}, {place}"), remedy))
-}
-
-/// Of a piece, or of a file; what cannot be read has none.
-fn bytes_of(Piece { path, span, .. }: &Piece) -> u64 {
-    let whole = || std::fs::metadata(path).map_or(0, |found| found.len());
-    span.as_ref().map_or_else(whole, demo_io::Span::size)
 }
 
 fn warn(session: &Session, findings: &[Finding]) {

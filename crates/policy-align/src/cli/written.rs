@@ -57,6 +57,7 @@ fn unwritten(output: &Path, error: WriteError) -> Failure {
     let remedy = match error {
         WriteError::Io { source, .. } => return Failure::writing(output, source),
         WriteError::NoRobot { .. } => "-o with a name that ends in .mcap, or no --robot",
+        WriteError::TooLong { .. } => "--time-unit, e.g. ns, or another format",
         WriteError::Robot { .. } => "other --units, or no --robot",
         _ => "another format",
     };

@@ -6,13 +6,107 @@ use text::plain;
 use super::error::ExportError;
 use crate::{Model, Verdict};
 
-/// Names that a function cannot have.
-const TAKEN: [&str; 57] = [
+/// Words of C, and names of the file.
+const TAKEN: &[&str] = &[
     "auto", "break", "case", "char", "const", "continue", "default", "do", "double", "else", "enum", "extern", "float",
     "for", "goto", "if", "inline", "int", "long", "register", "restrict", "return", "short", "signed", "sizeof",
-    "static", "struct", "switch", "typedef", "union", "unsigned", "void", "volatile", "while", "main", "exp", "sqrt",
-    "isfinite", "NAN", "expf", "sqrtf", "real", "N", "M", "A", "BOUNDS", "C", "Q", "V", "Z", "SCALE", "NORM", "MEAN",
-    "CENTRE", "METRIC", "SLOPE", "D",
+    "static", "struct", "switch", "typedef", "union", "unsigned", "void", "volatile", "while", "main", "real", "N",
+    "M", "A", "BOUNDS", "C", "Q", "V", "Z", "SCALE", "NORM", "MEAN", "CENTRE", "METRIC", "SLOPE", "D", "signgam",
+];
+
+/// Functions and macros of `math.h`, also those of POSIX that compilers declare if not asked for C99 alone; all functions exist with an
+/// f or l at their end, too.
+const MATH: &[&str] = &[
+    "acos",
+    "acosh",
+    "asin",
+    "asinh",
+    "atan",
+    "atan2",
+    "atanh",
+    "cbrt",
+    "ceil",
+    "copysign",
+    "cos",
+    "cosh",
+    "drem",
+    "erf",
+    "erfc",
+    "exp",
+    "exp10",
+    "exp2",
+    "expm1",
+    "fabs",
+    "fdim",
+    "finite",
+    "floor",
+    "fma",
+    "fmax",
+    "fmin",
+    "fmod",
+    "fpclassify",
+    "frexp",
+    "gamma",
+    "gamma_r",
+    "hypot",
+    "ilogb",
+    "isfinite",
+    "isgreater",
+    "isgreaterequal",
+    "isinf",
+    "isless",
+    "islessequal",
+    "islessgreater",
+    "isnan",
+    "isnormal",
+    "isunordered",
+    "j0",
+    "j1",
+    "jn",
+    "ldexp",
+    "lgamma",
+    "lgamma_r",
+    "llrint",
+    "llround",
+    "log",
+    "log10",
+    "log1p",
+    "log2",
+    "logb",
+    "lrint",
+    "lround",
+    "modf",
+    "nan",
+    "nearbyint",
+    "nextafter",
+    "nexttoward",
+    "pow",
+    "pow10",
+    "remainder",
+    "remquo",
+    "rint",
+    "round",
+    "scalb",
+    "scalbln",
+    "scalbn",
+    "signbit",
+    "significand",
+    "sin",
+    "sincos",
+    "sinh",
+    "sqrt",
+    "tan",
+    "tanh",
+    "tgamma",
+    "trunc",
+    "y0",
+    "y1",
+    "yn",
+    "NAN",
+    "INFINITY",
+    "HUGE_VAL",
+    "FP_NAN",
+    "FP_ZERO",
 ];
 
 /// A model in C: one file of ISO C99 that needs only `math.h`.
@@ -49,7 +143,9 @@ impl CSource {
     pub(super) fn check_name(&self) -> Result<(), ExportError> {
         let mut letters = self.name.chars();
         let first = letters.next().is_some_and(|c| c.is_ascii_alphabetic() || c == '_');
-        if first && letters.all(|c| c.is_ascii_alphanumeric() || c == '_') && !TAKEN.contains(&self.name.as_str()) {
+        let name = self.name.as_str();
+        let is_math = MATH.contains(&name) || name.strip_suffix(['f', 'l']).is_some_and(|name| MATH.contains(&name));
+        if first && letters.all(|c| c.is_ascii_alphanumeric() || c == '_') && !is_math && !TAKEN.contains(&name) {
             return Ok(());
         }
         Err(ExportError::Name { name: self.name.clone() })
@@ -86,7 +182,7 @@ impl CSource {
             );
         }
         if !model.context.is_empty() {
-            let _ = writeln!(text, " *\n * Context c, which stays as it is during a movement, in this order:");
+            let _ = writeln!(text, " *\n * Context c, which is constant during a movement, in this order:");
         }
         for (at, channel) in model.context.iter().enumerate() {
             let name = comment(&channel.name);

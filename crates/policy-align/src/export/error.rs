@@ -8,7 +8,9 @@ pub enum ExportError {
     #[error("the policy is zero everywhere: no receptive field was learnt")]
     Nothing,
     /// Not a name in C.
-    #[error("'{name}' is not a C name: letters, digits and _, not starting with a digit, no keyword")]
+    #[error(
+        "'{name}' is not a C name: letters, digits and _, not starting with a digit, no keyword and no name of math.h"
+    )]
     Name {
         /// What was given.
         name: String,

@@ -1,5 +1,4 @@
 use gp::ScaledStates;
-use motion::LearntPolicy as _;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
@@ -22,11 +21,11 @@ pub(super) fn squared_radius(model: &Model, scaled: &ScaledStates<'_>) -> f64 {
     let scale: Vec<f64> = model.inputs().map(|channel| channel.scale).collect();
     let (policy, bounds) = (model.policy(), model.bounds());
     let states: Vec<DVector<f64>> = (1..=STATES).map(|index| between(&bounds, index)).collect();
-    let supports = policy.certainty(DMatrix::from_columns(&states).as_view()).support;
-    let evaluated = states.par_iter().zip(supports).map(|(state, support)| {
+    let supported = policy.are_supported(DMatrix::from_columns(&states).as_view());
+    let evaluated = states.par_iter().zip(supported).map(|(state, known)| {
         let z = DVector::from_fn(state.len(), |k, _| (state[k] * scale[k] - scaled.mean[k]) / scaled.spread);
         let nearest = scaled.z.column_iter().map(|row| (row - &z).norm_squared()).fold(f64::INFINITY, f64::min);
-        (nearest, support >= policy.least_support())
+        (nearest, known)
     });
     let mut evaluated: Vec<_> = evaluated.collect();
     evaluated.sort_by(|a, b| a.0.total_cmp(&b.0));

@@ -20,7 +20,7 @@ use crate::{Decision, FitError, Prepared, Smoothing, VelocitySource};
 
 /// Positions alone are smoothed if noise makes more than this share of the squared steps.
 const NOISY: f64 = 0.1;
-/// Sizes of receptive fields tried, in units of the states' spread.
+/// Values of `init_d` tried: one over the squared width of receptive fields, in units of the states' spread.
 const INIT_D: [f64; 5] = [1.0, 2.5, 6.0, 15.0, 40.0];
 const BANDWIDTHS: [Bandwidth; 3] = [Bandwidth::Narrow, Bandwidth::Medium, Bandwidth::Wide];
 

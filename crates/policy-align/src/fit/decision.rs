@@ -21,7 +21,7 @@ pub(super) fn rows_decision(readings: &AutoFit) -> Option<Decision> {
     if averaged > 0 {
         why.push(format!("means of {} samples where velocities differ by noise alone", found + averaged));
     }
-    why.extend(inducing.map(|inducing| format!("{inducing} of them stand for all")));
+    why.extend(inducing.map(|inducing| format!("{inducing} of them represent all")));
     if thinned > 0 {
         // In a task space a sample has several equations.
         let others = if task_space.is_some() { "other equations" } else { "others" };
@@ -43,8 +43,12 @@ pub(super) fn digests_decision(prepared: &Prepared, digests: &[Digest], readings
     let rows: usize = digests.iter().map(|digest| digest.indices.len()).sum();
     let why = match readings.slope().report().push {
         // Stretches are found in samples.
-        Some(_) => format!("constraints push, which {further} further samples, of which means are kept, do not tell"),
-        None => format!("all else is judged by these; of {further} further samples {rows} rows are learnt from"),
+        Some(_) => format!(
+            "constraints push, and only means are kept of {further} further samples, which do not show pushes: they are not learnt from"
+        ),
+        None => format!(
+            "decisions and findings are those of these samples; {rows} rows of {further} further samples are learnt from as well"
+        ),
     };
     let at_hand = format!("{} samples", prepared.demonstrations.n_samples());
     (!digests.is_empty()).then(|| decision("at once", at_hand, why, "--at-once"))

@@ -29,10 +29,11 @@ pub(super) fn weighed(
     let refused = |error: KinematicsError| FitError::Robot { reason: error.to_string() };
     let robot = RobotModel::from_urdf(text).map_err(refused)?;
     let joints = ChannelJoints::of(&robot, prepared.state.iter().map(|channel| channel.name.as_str()));
+    let joints = joints.map_err(|reason| FitError::Robot { reason })?;
     let scales = scales_of_joints(&prepared.state);
-    let momenta = momenta(&robot, &joints.map_err(refused)?, &scales, rows).map_err(refused)?;
+    let momenta = momenta(&robot, &joints, &scales, rows).map_err(refused)?;
     let Ok(rows) = rows.clone().with_momenta(momenta) else {
-        let no_mass = "its links have no masses, or so few that some joints move nothing, and none at the end of a chain is moved by the channels alone: give each link <inertial>";
+        let no_mass = "its mass matrix is singular: some joints move links without masses only, and no link at the end of a chain is moved by the channels alone; give each link <inertial>";
         let of_use = !rows.task_spaces().is_empty();
         return if of_use { Ok(None) } else { Err(FitError::Robot { reason: no_mass.to_owned() }) };
     };

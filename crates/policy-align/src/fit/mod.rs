@@ -25,9 +25,10 @@ use motion::{LearntPolicy, Policy};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
+use crate::channel_joints::joints_in_degrees;
 use crate::trust::{
-    AlignedNumbers, CommonPlane, TrustNumbers, VerdictInput, differing_goals, friction, judge, pushed, share_leaving,
-    share_unknown,
+    AlignedNumbers, CommonPlane, TrustNumbers, VerdictInput, common_surface, differing_goals, friction, judge, pushed,
+    share_leaving, share_unknown, slow_starts,
 };
 use crate::{DataSummary, Decision, Finding, FitError, Learnt, MadeBy, Model, PredictedSpeed, Prepared};
 use aligning::AlignedFit;
@@ -121,8 +122,13 @@ pub fn fit_with(
     if rows.momenta().is_none() {
         findings.extend(differing_goals(policy, prepared, &rows, &numbers));
         findings.extend(friction(policy, &rows));
+        findings.extend(slow_starts(policy, &rows));
+    }
+    if let Some(robot) = &options.robot {
+        findings.extend(joints_in_degrees(robot, &prepared.state).map_err(|reason| FitError::Robot { reason })?);
     }
     findings.extend(plane(prepared, &numbers));
+    findings.extend(common_surface(&rows, &prepared.state, &numbers));
     let trust =
         judge(VerdictInput { numbers, findings: &findings, state: &prepared.state, episodes: &prepared.episodes });
     // With a robot's inertia, parts along a movement are not lengths.

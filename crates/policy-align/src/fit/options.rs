@@ -22,9 +22,10 @@ pub struct FitOptions {
     pub folds: usize,
     /// Seed of every random choice (`--seed`).
     pub seed: u64,
-    /// Rows that Gaussian processes learn from, at most, spread in time along the movements (`--max-rows`).
+    /// Rows on which models are selected, at most, spread in time along the movements (`--max-rows`). If more are recorded and `inducing` is
+    /// not 0, the policy may be learnt from more.
     pub max_rows: usize,
-    /// Rows that stand for all where more than `max_rows` are recorded; 0: only `max_rows` are learnt from (`--inducing`).
+    /// Inducing rows, which represent all rows if more than `max_rows` are recorded; 0: only `max_rows` are learnt from (`--inducing`).
     pub inducing: usize,
     /// Text of a URDF whose joints are the channels (`--robot`): constraints of its last links are tried (S40), and its mass matrix as their
     /// metric.

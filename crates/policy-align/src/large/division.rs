@@ -1,7 +1,6 @@
 //! Which files, and which pieces of large ones, are read at once.
 
-use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use demo_io::{Piece, ReadError, ReadOptions, pieces_of};
 
@@ -96,7 +95,7 @@ impl Division {
         for path in listed {
             pieces.extend(pieces_of(Piece::whole(path, named_by_file), most_of_one, options, progress)?);
         }
-        let sizes: Vec<u64> = pieces.iter().map(bytes_of).collect();
+        let sizes: Vec<u64> = pieces.iter().map(Piece::bytes).collect();
         let fits = |every: &usize| sizes.iter().step_by(*every).sum::<u64>() <= most_bytes;
         let every = (1..pieces.len()).find(fits).unwrap_or(pieces.len().max(1));
         let is_at_once = |at: usize| at.is_multiple_of(every);
@@ -121,32 +120,13 @@ fn listed(files: &[PathBuf]) -> Result<Vec<PathBuf>, ReadError> {
 }
 
 fn bytes_of_all(files: &[PathBuf]) -> u64 {
-    files.iter().map(|path| bytes_in(path)).sum()
-}
-
-/// Of a file, a piece of one, or all files in a folder.
-fn bytes_of(piece: &Piece) -> u64 {
-    piece.span.as_ref().map_or_else(|| bytes_in(&piece.path), demo_io::Span::size)
-}
-
-/// Of a file, or of all files in a folder; nothing of what cannot be read, which the reader complains of.
-fn bytes_in(path: &Path) -> u64 {
-    match fs::metadata(path) {
-        Ok(found) if found.is_dir() => {
-            let entries = fs::read_dir(path).into_iter().flatten().flatten();
-            // Links to folders may lead round in a circle.
-            let is_link = |entry: &fs::DirEntry| entry.file_type().is_ok_and(|kind| kind.is_symlink());
-            let inside = entries.filter(|entry| !is_link(entry) || entry.path().is_file());
-            inside.map(|entry| bytes_in(&entry.path())).sum()
-        }
-        Ok(found) => found.len(),
-        Err(_) => 0,
-    }
+    files.iter().map(|path| demo_io::bytes_of(path)).sum()
 }
 
 #[cfg(test)]
 mod tests {
     use std::collections::BTreeSet;
+    use std::fs;
 
     use proptest::prelude::*;
 
@@ -179,9 +159,9 @@ mod tests {
                 division.at_once.iter().chain(further().map(|further| &further.piece)).map(|piece| &piece.path).collect();
             prop_assert_eq!(found.len(), files.len());
             prop_assert_eq!(division.at_once.len() + division.further.len(), files.len());
-            let at_once: u64 = division.at_once.iter().map(bytes_of).sum();
+            let at_once: u64 = division.at_once.iter().map(Piece::bytes).sum();
             prop_assert!(at_once <= most || division.at_once.len() == 1);
-            prop_assert!(further().all(|file| file.bytes == bytes_in(&file.piece.path) && file.rows > 0));
+            prop_assert!(further().all(|file| file.bytes == file.piece.bytes() && file.rows > 0));
             let rows: usize = further().map(|file| file.rows).sum();
             prop_assert!(rows as u64 <= ROWS + division.further.len() as u64);
             let shares = [1, 2, 3].map(|this| division.share((this, 3)));
@@ -222,6 +202,6 @@ mod tests {
             end = span.end;
         }
         assert_eq!(end, header.len() as u64 + bytes);
-        assert!(division.at_once.len() > 2 && division.at_once.iter().map(bytes_of).sum::<u64>() <= most);
+        assert!(division.at_once.len() > 2 && division.at_once.iter().map(Piece::bytes).sum::<u64>() <= most);
     }
 }

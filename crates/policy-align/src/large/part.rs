@@ -79,9 +79,9 @@ impl Part {
     /// From a file.
     ///
     /// # Errors
-    /// [`PartError::Parts`] for what is no part, or one of another version.
+    /// [`PartError::Parts`] for what is not a part, or is one of another version.
     pub fn of_json(text: &[u8]) -> Result<Part, PartError> {
-        let no_part = |reason: String| PartError::Parts { reason: format!("this is no part of a fit: {reason}") };
+        let no_part = |reason: String| PartError::Parts { reason: format!("this is not a part of a fit: {reason}") };
         let part: Part = serde_json::from_slice(text).map_err(|error| no_part(error.to_string()))?;
         match (part.format.as_str(), part.version) {
             (FORMAT, VERSION) => Ok(part),

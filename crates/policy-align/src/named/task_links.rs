@@ -41,7 +41,7 @@ impl TaskLinks {
     /// In a sentence: what is wrong with the text or a channel.
     pub(crate) fn moved_by(text: &str, channels: &[String]) -> Result<Self, String> {
         let robot = RobotModel::from_urdf(text).map_err(|error| error.to_string())?;
-        ChannelJoints::of(&robot, channels.iter().map(String::as_str)).map_err(|error| error.to_string())?;
+        ChannelJoints::of(&robot, channels.iter().map(String::as_str))?;
         let link = |name: String| Some((name.clone(), LinkPoint::new(&robot, &name, channels).ok()?));
         let links: Vec<_> = last_links(&robot).into_iter().filter_map(link).collect();
         Ok(TaskLinks { links: if links.len() > MOST_LINKS { Vec::new() } else { links } })

@@ -142,7 +142,7 @@ impl Entry {
                 Kind::LinkBall { link, centre: Point3::new(centre[0], centre[1], centre[2]), radius: positive(radius)? }
             }
             _ => {
-                return Err("give `normal`, or `point` and `radius`, or `robot`, `link` and `plane`".to_owned());
+                return Err("give `normal`, or `point` and `radius`; or `robot` and `link` with `plane`, or with `point` and `radius`".to_owned());
             }
         };
         let (from, until) = (self.from.unwrap_or(f64::NEG_INFINITY), self.until.unwrap_or(f64::INFINITY));

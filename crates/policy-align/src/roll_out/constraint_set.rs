@@ -37,7 +37,7 @@ impl ConstraintSet {
     }
 
     /// A(x, t) u = 0, from beginning to end, with A as a function of state (n) and seconds. It gives (k, n), where k may
-    /// change, or a sentence why it has no value there.
+    /// change, or a sentence why it has no value there, which becomes [`RollOutError::Constraint`](crate::RollOutError::Constraint).
     ///
     /// Rows that change forbid directions of movement; whether they keep anything, and so [`Path::broken_by`], only its
     /// author knows: it is 0 here.

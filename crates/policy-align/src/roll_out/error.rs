@@ -39,6 +39,16 @@ pub enum RollOutError {
         /// The demonstrated range of each channel, by name.
         ranges: Vec<(String, [f64; 2])>,
     },
+    /// The context that was chosen is outside the data.
+    #[error("context {name}={} is outside the data", short(*.value))]
+    ContextUnsupported {
+        /// Its channel.
+        name: String,
+        /// What was chosen.
+        value: f64,
+        /// The range that counts as known.
+        range: [f64; 2],
+    },
     /// A constraint does not allow the start.
     #[error("the start breaks constraint {constraint} by {by:.3e}")]
     StartBreaks {
@@ -114,6 +124,9 @@ impl RollOutError {
                     |(name, [low, high]): &(String, [f64; 2])| format!("{name} {} … {}", short(*low), short(*high));
                 let ranges: Vec<String> = ranges.iter().map(range).collect();
                 return Cow::Owned(format!("start near a demonstration, within {}", ranges.join(", ")));
+            }
+            RollOutError::ContextUnsupported { name, range: [low, high], .. } => {
+                return Cow::Owned(format!("a context within {name} {} … {}", short(*low), short(*high)));
             }
             RollOutError::Context { .. } => "--context with NAME=VALUE for each",
             RollOutError::Start { .. } => "give one number for each channel, in this order",

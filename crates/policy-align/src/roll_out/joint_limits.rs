@@ -1,6 +1,8 @@
 use kinematics::RobotModel;
 use nalgebra::DVectorView;
 
+use crate::channel_joints::joint_of;
+
 /// Limits of the channels that are joints of a robot.
 #[derive(Debug, Clone, PartialEq)]
 pub struct JointLimits {
@@ -16,7 +18,7 @@ impl JointLimits {
     pub fn from_urdf(text: &str, channels: &[String]) -> Result<Self, String> {
         let robot = RobotModel::from_urdf(text).map_err(|error| error.to_string())?;
         let of = |(at, name): (usize, &String)| {
-            let joint = &robot.joints()[robot.joint(name).ok()?];
+            let joint = &robot.joints()[joint_of(&robot, name)?];
             Some((at, name.clone(), joint.lower(), joint.upper()))
         };
         let limits: Vec<_> = channels.iter().enumerate().filter_map(of).collect();

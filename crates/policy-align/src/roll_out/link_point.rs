@@ -16,14 +16,13 @@ impl LinkPoint {
     /// channel.
     pub(crate) fn new(robot: &RobotModel, link: &str, channels: &[String]) -> Result<Self, String> {
         let link = robot.link(link).map_err(|error| error.to_string())?;
-        let joints = ChannelJoints::of(robot, channels.iter().map(String::as_str));
-        let joints = joints.map_err(|error| error.to_string())?;
+        let joints = ChannelJoints::of(robot, channels.iter().map(String::as_str))?;
         let mut above = Some(link);
         while let Some(attachment) = above.and_then(|link| robot.attachment(link)) {
             let missing = attachment.joint.filter(|joint| !joints.places.contains(&joint.column));
             if let Some(joint) = missing {
                 let name = robot.joints()[joint.column].name();
-                return Err(format!("joint '{name}' moves the link and is no channel of the state"));
+                return Err(format!("joint '{name}' moves the link but is not a channel of the state"));
             }
             above = Some(attachment.parent);
         }

@@ -25,7 +25,7 @@ use crate::{Model, ModelPolicy};
 use constraint_set::{Fault, Watch};
 use error::LONGEST;
 use holding::Holding;
-use runge_kutta::{Halt, RungeKutta};
+use runge_kutta::{RungeKutta, Unfollowed};
 
 /// Error of a step, in spreads of the channels.
 const TOLERANCE: f64 = 1e-4;
@@ -169,6 +169,12 @@ impl RollOut {
         if let Some(at) = start.iter().position(|x| !x.is_finite()) {
             return Err(RollOutError::StartNotFinite { channel: model.state[at].name.clone() });
         }
+        let of_context = model.context.iter().zip(&model.chosen_context).zip(model.bounds().into_iter().skip(expected));
+        for ((channel, &value), range) in of_context {
+            if !(range[0]..=range[1]).contains(&value) {
+                return Err(RollOutError::ContextUnsupported { name: channel.name.clone(), value, range });
+            }
+        }
         if !policy.is_supported(start.as_view()) {
             let (support, least) = (policy.support(start.as_view()), policy.least_support());
             let ranges =
@@ -233,11 +239,11 @@ impl Run<'_> {
             let at = |elapsed: f64| (begin + elapsed).min(end.next_down());
             let field = |state: &DVector<f64>, elapsed: f64| self.velocity(now, state, at(elapsed));
             state = method.follow(field, state, end - begin).map_err(|halt| match halt {
-                Halt::Field(error) => error,
-                Halt::NotFinite { state, elapsed } => {
+                Unfollowed::Field(error) => error,
+                Unfollowed::NotFinite { state, elapsed } => {
                     RollOutError::NotFinite { state: state.as_slice().to_vec(), time: begin + elapsed }
                 }
-                Halt::Steps { limit, elapsed } => {
+                Unfollowed::Steps { limit, elapsed } => {
                     RollOutError::TooManySteps { limit, time: begin + elapsed, seconds: self.seconds }
                 }
             })?;

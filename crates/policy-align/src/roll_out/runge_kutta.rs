@@ -5,7 +5,7 @@ const SHORTEST: f64 = 1e-6;
 
 /// Why a solution was not followed to its end.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) enum Halt<E> {
+pub(crate) enum Unfollowed<E> {
     /// The field has no value somewhere.
     Field(E),
     /// It is not finite at a state that was reached after so many seconds.
@@ -14,9 +14,9 @@ pub(crate) enum Halt<E> {
     Steps { limit: usize, elapsed: f64 },
 }
 
-impl<E> From<E> for Halt<E> {
+impl<E> From<E> for Unfollowed<E> {
     fn from(error: E) -> Self {
-        Halt::Field(error)
+        Unfollowed::Field(error)
     }
 }
 
@@ -45,19 +45,19 @@ impl RungeKutta {
         field: impl Fn(&DVector<f64>, f64) -> Result<DVector<f64>, E>,
         mut x: DVector<f64>,
         duration: f64,
-    ) -> Result<DVector<f64>, Halt<E>> {
+    ) -> Result<DVector<f64>, Unfollowed<E>> {
         let shortest = SHORTEST * duration.min(self.longest);
         let mut left = duration;
         let mut k1 = field(&x, 0.0)?;
         if !finite(&k1) {
-            return Err(Halt::NotFinite { state: x, elapsed: 0.0 });
+            return Err(Unfollowed::NotFinite { state: x, elapsed: 0.0 });
         }
         while left > 0.0 {
             let h = self.step.min(left).max(shortest.min(left));
             let time = duration - left;
             // Where a step no longer shortens what is left, no number of them is enough.
             let Some(less) = self.left.checked_sub(1).filter(|_| left - h < left) else {
-                return Err(Halt::Steps { limit: self.limit, elapsed: time });
+                return Err(Unfollowed::Steps { limit: self.limit, elapsed: time });
             };
             self.left = less;
             let k2 = field(&(&x + &k1 * (0.5 * h)), time + 0.5 * h)?;
@@ -69,7 +69,7 @@ impl RungeKutta {
             // What is not finite may only be a step too long, which is tried again, shorter.
             let lost = !(finite(&next) && finite(&k4));
             if lost && h <= shortest {
-                return Err(Halt::NotFinite { state: x, elapsed: time });
+                return Err(Unfollowed::NotFinite { state: x, elapsed: time });
             }
             let error = if lost || error.is_nan() { f64::INFINITY } else { error };
             if !lost && (error <= 1.0 || h <= shortest) {
@@ -128,9 +128,9 @@ mod tests {
     fn what_is_not_finite_ends_it_where_it_is() {
         let field = |x: &DVector<f64>, _: f64| Ok::<_, Infallible>(dvector![if x[0] < 0.5 { 1.0 } else { f64::NAN }]);
         let follow = |start: f64| RungeKutta::new(dvector![1e-4], 2.0, 10_000).follow(field, dvector![start], 2.0);
-        let Err(Halt::NotFinite { state, elapsed }) = follow(0.0) else { panic!("it stops at the edge") };
+        let Err(Unfollowed::NotFinite { state, elapsed }) = follow(0.0) else { panic!("it stops at the edge") };
         assert!((state[0] - 0.5).abs() < 1e-3 && (elapsed - 0.5).abs() < 1e-3, "{state} {elapsed}");
-        assert!(matches!(follow(1.0), Err(Halt::NotFinite { elapsed: 0.0, .. })));
+        assert!(matches!(follow(1.0), Err(Unfollowed::NotFinite { elapsed: 0.0, .. })));
         // Trial steps that overflow are only too long.
         let steep = |x: &DVector<f64>, _: f64| Ok::<_, Infallible>(x.map(|x| -x.sinh()));
         let end = RungeKutta::new(dvector![1e-4], 1.0, 10_000).follow(steep, dvector![10.0], 1.0).unwrap();
@@ -143,8 +143,8 @@ mod tests {
         let shaking = |_: &DVector<f64>, t: f64| Ok::<_, Infallible>(dvector![1e9 * (1e9 * t).cos()]);
         let mut method = RungeKutta::new(dvector![1e-4], 1e3, 1000);
         let halt = method.follow(shaking, dvector![0.0], 1e3).unwrap_err();
-        let Halt::Steps { limit: 1000, elapsed } = halt else { panic!("{halt:?}") };
+        let Unfollowed::Steps { limit: 1000, elapsed } = halt else { panic!("{halt:?}") };
         assert!(elapsed < 1e3);
-        assert_eq!(method.follow(shaking, dvector![0.0], 1.0), Err(Halt::Steps { limit: 1000, elapsed: 0.0 }));
+        assert_eq!(method.follow(shaking, dvector![0.0], 1.0), Err(Unfollowed::Steps { limit: 1000, elapsed: 0.0 }));
     }
 }

@@ -63,7 +63,7 @@ impl Halt {
 impl fmt::Display for Halt {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Halt::NoState => write!(f, "no joint state has come"),
+            Halt::NoState => write!(f, "no joint state received"),
             Halt::Missing { joints, found } => {
                 let found = if found.is_empty() { "none".to_owned() } else { found.join(", ") };
                 write!(f, "no position of {}; joints of the last message: {found}", joints.join(", "))

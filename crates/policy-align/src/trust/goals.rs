@@ -54,7 +54,7 @@ fn predicts(numbers: &TrustNumbers) -> bool {
 fn own_share(policy: &dyn Policy, rows: &gp::Rows) -> Option<f64> {
     let movements = rows.indices().iter().map(|index| index.trajectory).max()? + 1;
     let mut errors = vec![Vec::new(); movements];
-    for Along { trajectory, direction, speed, wanted } in along(policy, rows) {
+    for Along { trajectory, direction, speed, wanted, .. } in along(policy, rows) {
         errors[trajectory].push((direction, speed - wanted));
     }
     let all = errors.iter().flatten().map(|(_, error)| error * error).sum::<f64>();

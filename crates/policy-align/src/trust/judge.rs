@@ -35,8 +35,8 @@ pub(crate) fn judge(evidence: VerdictInput<'_>) -> Trust {
     let mut findings = findings.to_vec();
     let mut found = |verdict, what: String, next: &str| findings.push(Finding { verdict, what, next: next.to_owned() });
     about_reading(&numbers, state, &mut found);
-    about_error(&numbers, &mut found);
     about_episodes(&numbers, episodes, &mut found);
+    about_error(&numbers, &mut found);
     findings.sort_by_key(|finding| Reverse(finding.verdict));
     Trust { verdict: Trust::verdict_of(&findings), findings, numbers }
 }
@@ -71,7 +71,7 @@ fn about_reading(numbers: &TrustNumbers, state: &[StateChannel], found: &mut dyn
                 percent(numbers.direct_error),
                 percent(numbers.held_out_error)
             ),
-            "record more movements or reduce noise, or record what else the motion depends on (time, load, target); what stays as it is during a movement is --context",
+            "record more movements or reduce noise, or record what else the motion depends on (time, load, target); what is constant during a movement can be given as --context",
         ),
         Hypothesis::TooFew => {
             found(Verdict::Doubtful, "too few movements to detect constraints".to_owned(), "record at least five");
@@ -143,18 +143,23 @@ fn about_error(numbers: &TrustNumbers, found: &mut dyn FnMut(Verdict, String, &s
     }
 }
 
-/// An episode that the others predict much worse than each other: another task, a fault of tracking, or a lone corner.
+/// An episode that the others predict much worse than each other: another task, a fault of tracking, or a lone corner. It is in doubt if the
+/// others alone would be predicted well.
 fn about_episodes(numbers: &TrustNumbers, episodes: &[String], found: &mut dyn FnMut(Verdict, String, &str)) {
     let errors: Vec<f64> = numbers.episode_errors.iter().map(|&(_, error)| error).collect();
     let worst = numbers.episode_errors.iter().max_by(|(_, a), (_, b)| a.total_cmp(b));
     let (Some(usual), Some(&(episode, error))) = (upper_median(errors), worst) else { return };
     let is_odd = error > ODD * usual && error > TrustNumbers::GOOD_HELD_OUT_ERROR;
     if is_odd && numbers.grouping != Grouping::BlocksOfTime {
+        let others = numbers.episode_errors.iter().filter(|(other, _)| *other != episode).map(|(_, error)| error);
+        let of_others = others.sum::<f64>() / (numbers.episode_errors.len() - 1) as f64;
+        let spoils = numbers.held_out_error > TrustNumbers::GOOD_HELD_OUT_ERROR
+            && of_others <= TrustNumbers::GOOD_HELD_OUT_ERROR;
         let (episode, error, usual) = (&episodes[episode], percent(error), percent(usual));
         found(
-            Verdict::Good,
+            if spoils { Verdict::Doubtful } else { Verdict::Good },
             format!("episode {episode} is predicted worst: error {error}, median {usual}"),
-            "check it: another task, a tracking fault, or a place that no other movement visits?",
+            "check it: another task, a tracking fault, or a place that no other movement visits? --hold-out learns without it",
         );
     }
 }

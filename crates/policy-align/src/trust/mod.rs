@@ -2,6 +2,7 @@
 
 mod between;
 mod common_plane;
+mod common_surface;
 mod freely;
 mod friction;
 mod goals;
@@ -9,9 +10,11 @@ mod judge;
 mod numbers;
 mod pushes;
 mod report;
+mod starts;
 
 pub(crate) use between::share_unknown;
 pub(crate) use common_plane::CommonPlane;
+pub(crate) use common_surface::common_surface;
 pub(crate) use freely::share_leaving;
 pub(crate) use friction::friction;
 pub(crate) use goals::differing_goals;
@@ -19,3 +22,4 @@ pub(crate) use judge::{VerdictInput, judge};
 pub use numbers::{AlignedNumbers, TrustNumbers};
 pub(crate) use pushes::pushed;
 pub use report::Trust;
+pub(crate) use starts::slow_starts;

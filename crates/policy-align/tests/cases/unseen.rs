@@ -210,6 +210,29 @@ fn orientations(seed: u64, constrained: bool, flips: bool) -> Case {
     of_movements(&["qx", "qy", "qz", "qw"], &movements)
 }
 
+/// The bowl on spheres about 0, the one of radius 1 or for each movement another, or on cylinders; half of the movements also under
+/// constraints that change.
+fn on_surfaces(round: bool, one: bool, seed: u64) -> Case {
+    let mut rng = Random::seed_from_u64(seed);
+    let across = move |x: &Vector| DVector::from_vec(vec![x[0], x[1], if round { x[2] } else { 0.0 }]);
+    let movements: Vec<[DMatrix<f64>; 3]> = (0..COUNT + FRESH)
+        .map(|at| {
+            let start = DVector::from_fn(3, |_, _| rng.random_range(-1.8..1.8));
+            let off = if one { 1.0 / across(&start).norm() - 1.0 } else { 0.0 };
+            let (start, normals) = (&start + across(&start) * off, normals(3, &mut rng));
+            let robot = move |time: f64, x: &Vector| {
+                let n = across(x).normalize();
+                let own = normals(time);
+                let own = (&own - &n * n.dot(&own)).normalize();
+                let left = pressed(&n, 0.0, &bowl(x));
+                if at % 2 == 0 { pressed(&own, 0.0, &left) } else { left }
+            };
+            movement(start, &(Box::new(|_, x| bowl(x)), Box::new(robot)))
+        })
+        .collect();
+    of_movements(&["x", "y", "z"], &movements)
+}
+
 /// A policy is right below this error (nUPE), which is less than elsewhere: what is asked here is whether it is named.
 const RIGHT: f64 = 0.1;
 
@@ -266,5 +289,10 @@ pub(crate) fn all() -> Vec<Named> {
         case("Coulomb friction, 3-D", move |s| executed(3, s, rubbing)),
         case("constraints that leak a tenth, 3-D", move |s| executed(3, s, leaking(0.1))),
         case("constraints that leak a third, 3-D", move |s| executed(3, s, leaking(0.3))),
+        case("all on one sphere, 3-D", |s| on_surfaces(true, true, s)),
+        case("all on one sphere, 3-D, 5 % noise", |s| on_surfaces(true, true, s).velocity_noise(0.05, s)),
+        case("all on one cylinder, 3-D", |s| on_surfaces(false, true, s)),
+        case("all on spheres about one centre, 3-D", |s| on_surfaces(true, false, s)),
+        case("all on spheres about one centre, 3-D, positions only", |s| positions_only(on_surfaces(true, false, s))),
     ]
 }

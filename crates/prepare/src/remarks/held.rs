@@ -1,4 +1,4 @@
-//! Channels in which noise is all that changes.
+//! Channels in which only noise changes.
 
 use motion::{Channel, Demonstrations, Finding, Verdict};
 
@@ -30,10 +30,7 @@ pub(crate) fn held(demonstrations: &Demonstrations, channels: &[Channel]) -> Opt
     let verb = if held.len() == 1 { "is" } else { "are" };
     Some(Finding {
         verdict: Verdict::Doubtful,
-        what: format!(
-            "{} {verb} held: noise is all that changes there, and would be taken for motion",
-            names.join(", ")
-        ),
+        what: format!("{} {verb} held: only noise changes there, and would be mistaken for motion", names.join(", ")),
         next: format!("leave out what does not move: --ignore {}", names.join(",")),
     })
 }

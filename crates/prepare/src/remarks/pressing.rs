@@ -1,4 +1,4 @@
-//! A direction in which the velocity is the same wherever the hand is.
+//! A direction in which the velocity is the same everywhere.
 
 use motion::{Demonstrations, Finding, Trajectory, Verdict};
 use nalgebra::{DMatrix, DVector};
@@ -25,7 +25,7 @@ pub fn pressing(demonstrations: &Demonstrations, state: &[StateChannel]) -> Opti
     Some(Finding {
         verdict: Verdict::Doubtful,
         what: format!(
-            "the velocity along {direction} is the same wherever the hand is ({} ± {}, {} of the speed)",
+            "the velocity along {direction} is the same everywhere ({} ± {}, {} of the speed)",
             short(steady.mean.abs()),
             short(steady.deviation),
             percent(steady.share)

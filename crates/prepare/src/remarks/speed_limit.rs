@@ -51,7 +51,7 @@ impl Plateau {
         Finding {
             verdict: Verdict::Doubtful,
             what: format!("{share} of the samples have the same largest speed{along}, {speed}: a speed limit?"),
-            next: "at the limit only the policy's direction shows: raise it, teach more slowly, or record the velocities that were commanded".to_owned(),
+            next: "at the limit only the policy's direction is observed: raise the limit, teach more slowly, or record the velocities that were commanded".to_owned(),
         }
     }
 }

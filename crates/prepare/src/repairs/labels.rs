@@ -27,7 +27,7 @@ pub(crate) fn decide(episodes: &mut [Episode], dim: usize, notes: &mut Notes) {
     let every = samples / lengths.len();
     notes.found(
         Verdict::Good,
-        format!("labels of constraints change every {every} samples, too often to tell constraints"),
+        format!("labels of constraints change every {every} samples, too often to identify constraints"),
         "--constraint-column with a column that names the constraint, or --ignore",
     );
 }

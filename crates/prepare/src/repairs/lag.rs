@@ -25,7 +25,7 @@ pub(crate) fn remark(episodes: &[Episode], notes: &mut Notes) {
     } else {
         (
             "earlier",
-            "right if they are commands that the robot follows so late; otherwise shift them, or --integration displacement takes velocities from the positions",
+            "correct if they are commands that the robot follows with this delay; otherwise shift them, or --integration displacement takes velocities from the positions",
         )
     };
     notes.found(

@@ -86,7 +86,7 @@ pub(crate) fn doubt(demonstrations: &Demonstrations, notes: &mut Notes) {
     notes.found(
         Verdict::Doubtful,
         format!(
-            "samples are {} s apart, an episode lasts {} s: are stamps milliseconds?",
+            "samples are {} s apart, an episode lasts {} s; stamps may be milliseconds",
             short(usual),
             short(movement.seconds(0, movement.n_samples() - 1))
         ),

@@ -201,7 +201,7 @@ fn rescale(episodes: &mut [Episode], fit: &Steps, channels: &[Channel], notes: &
         let times = 1.0 / factor;
         (format!("velocities of channel {name} are {} times its steps, unlike the others", short(times)), times)
     };
-    let next = mistake(times, step).map_or("check units and time step (--dt)", |(_, words)| words);
+    let next = mistake(times, step).map_or("check units and time step (--dt), or whether a filter delays them: --integration displacement takes velocities from the positions", |(_, words)| words);
     notes.decided("velocities", "recorded, rescaled to agree with the steps", what.clone(), "--integration");
     notes.found(Verdict::Doubtful, format!("{what}; they were converted to the units of positions and stamps"), next);
 }

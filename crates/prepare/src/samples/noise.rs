@@ -5,9 +5,10 @@ use nalgebra::{DVector, DVectorView};
 use serde::{Deserialize, Serialize};
 use smoothing::{PositionNoise, VelocityNoise};
 
+use crate::VelocitySource;
 use crate::notes::Notes;
+use crate::numbers::percent_of_all;
 use crate::repairs::agreement::Agreement;
-use crate::{VelocitySource, numbers};
 
 /// Positions count as exact if noise makes less than this share of the squared steps.
 const EXACT: f64 = 0.01;
@@ -141,7 +142,7 @@ pub(crate) fn decide(
     let words = match &noise.positions {
         None => "too few consecutive samples to estimate position noise".to_owned(),
         Some(_) if share < 1e-4 => "position noise is negligible".to_owned(),
-        Some(_) => format!("noise makes {} of the squared steps", percent(share)),
+        Some(_) => format!("noise makes {} of the squared steps", percent_of_all(share)),
     };
     let of_velocities = noise.velocity_share.unwrap_or(0.0);
     let recorded = match agreement {
@@ -156,7 +157,7 @@ pub(crate) fn decide(
         VelocitySource::Fused => ("velocities as recorded, positions fused with them", words),
         VelocitySource::Noisy(_) => (
             "velocities as recorded, with their noise",
-            format!("noise share of their squares: {}", percent(of_velocities)),
+            format!("noise share of their squares: {}", percent_of_all(of_velocities)),
         ),
         VelocitySource::Positions if agreement == Agreement::None => ("positions smoothed piecewise", words),
         VelocitySource::Positions | VelocitySource::PositionsAsRequested => {
@@ -167,14 +168,9 @@ pub(crate) fn decide(
     if recorded == VelocitySource::Positions && share > NOISY {
         notes.found(
             Verdict::Good,
-            format!("noise makes {} of the squared steps", percent(share)),
+            format!("noise makes {} of the squared steps", percent_of_all(share)),
             "record velocities or commands, or measure positions more exactly",
         );
     }
     recorded
-}
-
-/// Where steps are nothing but noise, its estimate may exceed them.
-fn percent(share: f64) -> String {
-    numbers::percent(share.min(1.0))
 }

@@ -42,8 +42,8 @@ pub(crate) fn as_requested(
 }
 
 fn nearest_odd(samples: f64) -> usize {
-    // As a cast, what is no number of samples becomes none or very many.
-    2 * ((samples - 1.0) / 2.0).round().max(0.0) as usize + 1
+    // Not a number becomes 1; what is too large becomes the largest.
+    (((samples - 1.0) / 2.0).round().max(0.0) as usize).saturating_mul(2).saturating_add(1)
 }
 
 /// The same movements; velocities are slopes of the parabola through a sample and its neighbours.
@@ -61,7 +61,9 @@ mod tests {
 
     #[test]
     fn windows_are_odd() {
-        for (samples, expected) in [(9.0, 9), (8.4, 9), (7.9, 7), (4.0, 5), (0.2, 1), (-3.0, 1), (f64::NAN, 1)] {
+        for (samples, expected) in
+            [(9.0, 9), (8.4, 9), (7.9, 7), (4.0, 5), (0.2, 1), (-3.0, 1), (f64::NAN, 1), (1e30, usize::MAX)]
+        {
             assert_eq!(nearest_odd(samples), expected, "{samples}");
         }
     }

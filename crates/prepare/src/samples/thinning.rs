@@ -4,7 +4,7 @@ use motion::{Demonstrations, MotionError, Trajectory, upper_median};
 use nalgebra::DMatrix;
 
 use crate::notes::Notes;
-use crate::numbers::percent;
+use crate::numbers::percent_of_all;
 use crate::samples::noise::{Noise, squared_steps};
 
 /// Samples are averaged until noise makes at most this share of the squared steps.
@@ -31,8 +31,8 @@ pub(crate) fn decide(demonstrations: &Demonstrations, noise: &Noise, notes: &mut
     if taken > 1 {
         let why = format!(
             "noise share of the squared steps: {} before, {} after",
-            percent(noise.step_share.min(1.0)),
-            percent(share)
+            percent_of_all(noise.step_share),
+            percent_of_all(share)
         );
         notes.decided("averaging", format!("over {taken} samples"), why, "--smooth");
     }

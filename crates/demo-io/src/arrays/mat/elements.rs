@@ -149,7 +149,7 @@ impl<'a> Elements<'a> {
         for _ in 0..count {
             let element = self.next()?;
             if element.kind != MATRIX {
-                return Err(self.corrupt("an element of a cell array is no variable"));
+                return Err(self.corrupt("an element of a cell array is not a variable"));
             }
             self.input.charge(128)?;
             values.push(self.within(element.bytes).matrix(depth + 1)?.1);

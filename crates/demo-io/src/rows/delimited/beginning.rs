@@ -49,7 +49,11 @@ impl<'a> Beginning<'a> {
         let Self { dialect, header, head, .. } = self;
         let Some((first_line, first)) = head.first() else {
             let what = if header.is_some() { "there is a header but no row" } else { "there is no row" };
-            return Err(ReadError::Empty(Fault::new(what, &input.name, "a file with samples")));
+            return Err(ReadError::Empty(Fault::new(
+                what,
+                &input.name,
+                "a file with samples; instead of a folder, name the files in it that are recordings",
+            )));
         };
         if header.is_none() && input.options.state.is_empty() {
             let n = first.len();

@@ -55,7 +55,7 @@ impl Dialect {
             Some(',') => true,
             Some('.') => false,
             Some(other) => {
-                let what = format!("'{other}' is no decimal point");
+                let what = format!("'{other}' is not a decimal point");
                 return Err(ReadError::Option(Fault::new(what, "--decimal", "--decimal . or --decimal ,")));
             }
             None => separator != b',' && has_decimal_commas(&rows, separator),

@@ -39,6 +39,11 @@ impl Config {
         })?;
         let names: Vec<String> = groups().map(|(name, _)| name.to_owned()).collect();
         for (name, table) in &tables {
+            let of = groups().find(|(_, command)| keys(command).iter().any(|key| key == name));
+            if let Some((group, _)) = of.filter(|_| !table.is_table()) {
+                let remedy = format!("a line [{group}] above it, as `policy-align fit --print-config` writes it");
+                return Err(Failure::usage(format!("'{name}' is in no table"), displayed(path), remedy));
+            }
             check(name, &names, "table", text, path)?;
             let keys: Vec<String> =
                 groups().filter(|(group, _)| group == name).flat_map(|(_, command)| keys(&command)).collect();
@@ -183,6 +188,7 @@ mod tests {
                 && said("[fit]\nbandwith = 1").contains("'bandwidth'")
         );
         assert!(said("[rol_out]\nstep = 1\n").contains("'rollout'"));
+        assert!(said("learner = 'slope'\n").contains("a line [fit] above it"));
         assert!(said("[fit\n").contains("line 1"));
         let config = parsed("[fit]\nseed = 'a'\n").unwrap();
         assert!(config.under("fit", &FitFlags::default()).unwrap_err().to_string().contains("[fit]"));

@@ -46,7 +46,7 @@ pub(crate) struct ReadFlags {
     /// Velocity columns, in the order of the state
     #[arg(long, value_name = "PATTERNS")]
     pub(crate) velocity: Vec<String>,
-    /// What is constant in an episode, as a goal; or none [default: by name]
+    /// Constant in an episode, e.g. a goal; or none [default: by name]
     #[arg(long, value_name = "PATTERNS")]
     pub(crate) context: Vec<String>,
     /// Time column
@@ -82,7 +82,7 @@ pub(crate) struct ReadFlags {
     /// Sort samples by their stamps
     #[arg(long)]
     sort: bool,
-    /// Split episodes at longer gaps between stamps
+    /// Split episodes at longer gaps, and where stamps go back
     #[arg(long, value_name = "SECONDS")]
     split_gap: Option<f64>,
     /// Remove samples at rest at either end
@@ -163,13 +163,13 @@ pub(crate) struct FitFlags {
     /// Random seed [default: 1]
     #[arg(long, value_name = "NUMBER")]
     seed: Option<u64>,
-    /// Most samples that a Gaussian process is searched on [default: 400]
+    /// Samples on which Gaussian processes are selected [default: 400]
     #[arg(long, value_name = "NUMBER")]
     max_rows: Option<usize>,
-    /// Samples that stand for all others; 0 drops these [default: 500]
+    /// Samples that represent all; 0 drops the others [default: 500]
     #[arg(long, value_name = "NUMBER")]
     inducing: Option<usize>,
-    /// Robot with these joints: tries its links and its masses
+    /// Robot with these joints: tries its links and its inertia
     #[arg(long, value_name = "FILE.urdf")]
     robot: Option<PathBuf>,
     /// Size of files and pieces held together, as 2GB or all [default: 256MB]

@@ -155,7 +155,7 @@ fn data(model: &Model, checksum: &str) -> Markup {
         model.data.files.iter().map(|file| format!("{}, SHA-256 {:.16}", file.name, file.sha256)).collect();
     html! {
         (channels(&model.state))
-        @if !model.context.is_empty() { p { "Context, which stays as it is during a movement:" } (channels(&model.context)) }
+        @if !model.context.is_empty() { p { "Context, constant during a movement:" } (channels(&model.context)) }
         (left_out(&model.data.left_out))
         p .where { "Files: "
         (files.join("; ")) ". " (model.made_by.program) ", " (model.made_by.time) ", seed " (model.seed) ". "

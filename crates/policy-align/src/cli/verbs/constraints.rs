@@ -2,7 +2,9 @@ use std::path::PathBuf;
 
 use clap::Args;
 use policy_align::gp::Acting;
-use policy_align::{ConstraintStretch, Model, Prepared, StateChannel, TaskLinks, constraint_file};
+use policy_align::{
+    ConstraintStretch, Finding, Model, Prepared, StateChannel, TaskLinks, constraint_file, joints_in_degrees,
+};
 use serde_json::json;
 
 use crate::cli::failure::{Exit, Failure, displayed};
@@ -63,7 +65,7 @@ impl Constraints {
         }
         let model = load(session, &self.model)?;
         let (_, prepared) = prepared_for(session, &model, &self.files, (&self.read, &self.prepare))?;
-        let links = self.links(&model)?;
+        let links = self.links(session, &model)?;
         let found = acted(&model, &prepared, links.as_ref(), &self.files)?;
         let found = self.chosen(found, &prepared)?;
         if let Some(path) = &self.output {
@@ -81,11 +83,15 @@ impl Constraints {
         Ok(Output::done(self.told(&model, &found)))
     }
 
-    fn links(&self, model: &Model) -> Result<Option<TaskLinks>, Failure> {
+    fn links(&self, session: &Session, model: &Model) -> Result<Option<TaskLinks>, Failure> {
         let Some(path) = &self.robot else { return Ok(None) };
-        let links = TaskLinks::from_urdf(&urdf(path)?, &self.link, &model.channels());
+        let text = urdf(path)?;
         let remedy = "--link NAME; a URDF with joints named like the channels";
-        links.map(Some).map_err(|reason| Failure::usage(reason, displayed(path), remedy))
+        let refused = |reason| Failure::usage(reason, displayed(path), remedy);
+        if let Some(Finding { what, next, .. }) = joints_in_degrees(&text, &model.state).map_err(refused)? {
+            session.warn(&format!("{what}: {next} for `fit`"));
+        }
+        TaskLinks::from_urdf(&text, &self.link, &model.channels()).map(Some).map_err(refused)
     }
 
     fn chosen(&self, found: Vec<ConstraintStretch>, prepared: &Prepared) -> Result<Vec<ConstraintStretch>, Failure> {

@@ -87,9 +87,7 @@ impl Evaluate {
         if self.leave_constraint_out {
             tell_left_out(&left_out, &mut lines);
         } else {
-            for (label, error) in by_constraint(&prepared, &judged) {
-                lines.add("constraint", &format!("{label}: {} (median error of its episodes)", squared_error(error)));
-            }
+            tell_by_constraint(&by_constraint(&prepared, &judged), &mut lines);
         }
         if let Some(most) = self.require {
             lines.add("required", &format!("at most {}: {}", short(most), if failed { "not met" } else { "met" }));
@@ -158,7 +156,7 @@ fn training(model: &Model, files: &[PathBuf]) -> Result<Vec<String>, Failure> {
     Ok(summaries(files)?.into_iter().filter(learnt).map(|file| file.name).collect())
 }
 
-/// To learn as a model was learnt.
+/// Learner, reading and seed of a model; all other options are the defaults, because a model does not store them.
 fn options_like(model: &Model) -> FitOptions {
     let (learner, reading) = match &model.learnt {
         Learnt::Auto(both) => (LearnerChoice::Auto, both.overridden()),
@@ -180,7 +178,7 @@ fn tell(prepared: &Prepared, judged: &Evaluation, lines: &mut Lines) {
     }
     lines.add("support", &format!("{} % of the samples within the data", short(100.0 * judged.supported)));
     if judged.supported < 0.5 {
-        let advice = "errors there say nothing of the policy: same units, same channels?";
+        let advice = "errors there do not measure the policy; check units and channels";
         lines.add("warning", &format!("most samples are outside the data that the model was learnt from; {advice}"));
     }
     if let Some(nupe) = judged.nupe {
@@ -194,12 +192,23 @@ fn tell_left_out(left_out: &[ConstraintLeftOut], lines: &mut Lines) {
         let (error, count) = (squared_error(*policy_error), counted(episodes.len(), "episode"));
         lines.add("left out", &format!("{}: {error} when learnt without it ({count})", left.constraint));
     }
-    if left_out.len() > LISTED {
-        lines.add("", &format!("and {} more: --json shows all", left_out.len() - LISTED));
+    tell_how_many_more(left_out.len(), lines);
+}
+
+fn tell_by_constraint(errors: &BTreeMap<String, f64>, lines: &mut Lines) {
+    for (label, error) in errors.iter().take(LISTED) {
+        lines.add("constraint", &format!("{label}: {} (median error of its episodes)", squared_error(*error)));
+    }
+    tell_how_many_more(errors.len(), lines);
+}
+
+fn tell_how_many_more(all: usize, lines: &mut Lines) {
+    if all > LISTED {
+        lines.add("", &format!("and {} more: --json shows all", all - LISTED));
     }
 }
 
-/// Median error of the episodes of each constraint, where the file names them; the first ones.
+/// Median error of the episodes of each constraint, where the file names them.
 fn by_constraint(prepared: &Prepared, judged: &Evaluation) -> BTreeMap<String, f64> {
     let mut errors: BTreeMap<String, Vec<f64>> = BTreeMap::new();
     for (label, error) in prepared.constraints.iter().zip(&judged.episodes) {
@@ -208,5 +217,5 @@ fn by_constraint(prepared: &Prepared, judged: &Evaluation) -> BTreeMap<String, f
         }
     }
     let median = |(label, errors): (String, Vec<f64>)| Some((label, motion::upper_median(errors)?));
-    errors.into_iter().take(LISTED).filter_map(median).collect()
+    errors.into_iter().filter_map(median).collect()
 }

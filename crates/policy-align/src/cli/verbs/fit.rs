@@ -33,7 +33,7 @@ const MODEL: &str = "model.json";
 #[command(after_help = "\
 Writes a trust report next to the model: MODEL.trust.html and MODEL.trust.json.
 Exit code 1 if its verdict is \"do not use\".
-After an interrupt the same command goes on; what was read is not read again.
+After an interrupt, the same command resumes: nothing is read twice.
 All flags of reading files: policy-align check --help
 
 Example:
@@ -51,7 +51,7 @@ pub(crate) struct Fit {
     /// Make the I-th of N parts of a fit to larger files, and stop
     #[arg(long, value_name = "I/N", conflicts_with = "merge")]
     shard: Option<String>,
-    /// The parts of all shares, for the same files
+    /// Merge the parts of all shards, of the same files
     #[arg(long, value_name = "PARTS", num_args = 1..)]
     merge: Vec<PathBuf>,
     /// Print all flags as a file for --config, and stop
@@ -216,7 +216,7 @@ fn divided(recordings: Recordings, names: &[String], place: &str) -> Result<(Rec
 fn spread(share: &str, known: &[String]) -> Result<Vec<String>, Failure> {
     let percent: Option<f64> = share.trim_end_matches('%').trim().parse().ok();
     let Some(percent) = percent.filter(|percent| *percent > 0.0 && *percent < 100.0 && known.len() > 1) else {
-        let what = format!("'{share}' is no share of {}", counted(known.len(), "episode"));
+        let what = format!("'{share}' is not a share of {}", counted(known.len(), "episode"));
         return Err(Failure::usage(what, "--hold-out", "between 0 and 100 %, as 20%, or names of episodes"));
     };
     let count = ((known.len() as f64 * percent / 100.0).round() as usize).clamp(1, known.len() - 1);

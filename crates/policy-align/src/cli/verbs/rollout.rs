@@ -132,6 +132,7 @@ pub(crate) fn followed(flags: &RollOutFlags, model: &Model, start: &DVector<f64>
     flags.roll_out(model)?.follow(model, start).map_err(|error| {
         let exit = match error {
             RollOutError::Unsupported { .. }
+            | RollOutError::ContextUnsupported { .. }
             | RollOutError::StartBreaks { .. }
             | RollOutError::StartBeyondLimit { .. }
             | RollOutError::NotFinite { .. }
@@ -139,6 +140,7 @@ pub(crate) fn followed(flags: &RollOutFlags, model: &Model, start: &DVector<f64>
             _ => Exit::Usage,
         };
         let place = match error {
+            RollOutError::ContextUnsupported { .. } => "--context".to_owned(),
             RollOutError::NotPositive { name, .. } => format!("--{name}"),
             RollOutError::TooLong { .. } => "--seconds, --step".to_owned(),
             _ => format!("--from {from}"),

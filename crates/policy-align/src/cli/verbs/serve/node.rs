@@ -183,7 +183,7 @@ fn topic_name(text: &str, flag: &str) -> Result<Name, Failure> {
         letters && part.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_')
     };
     if !text.strip_prefix('/').is_some_and(|rest| rest.split('/').all(is_part)) {
-        let what = format!("'{text}' is no full name of a topic: / and letters, digits and _ after each");
+        let what = format!("'{text}' is not a full name of a topic: / and letters, digits and _ after each");
         return Err(refused(what));
     }
     Name::parse(text).map_err(|error| refused(error.to_string()))
@@ -194,7 +194,7 @@ fn domain() -> Result<u16, Failure> {
     let Some(text) = std::env::var_os("ROS_DOMAIN_ID").filter(|text| !text.is_empty()) else { return Ok(0) };
     let text = text.to_string_lossy();
     text.trim().parse().ok().filter(|&domain| domain <= LARGEST_DOMAIN).ok_or_else(|| {
-        let what = format!("'{text}' is no domain of ROS 2: 0 to {LARGEST_DOMAIN}");
+        let what = format!("'{text}' is not a domain of ROS 2: 0 to {LARGEST_DOMAIN}");
         Failure::usage(what, "the environment's ROS_DOMAIN_ID", "the number that the robot has")
     })
 }

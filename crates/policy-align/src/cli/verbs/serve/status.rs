@@ -25,15 +25,15 @@ pub(super) struct Status<'a> {
     lost: usize,
     rate: Option<f64>,
     listeners: usize,
-    /// Why the robot stands, in a word, or that it moves, as it was last told.
-    told: Option<&'static str>,
+    /// Why the robot is stopped, in a word, or that it moves, as shown last.
+    shown: Option<&'static str>,
 }
 
 impl<'a> Status<'a> {
     pub(super) fn new(session: &'a Session) -> Self {
         let (bar, start) = (session.bar(1, "{msg}"), Instant::now());
         let [since, sent, zero, lost, listeners] = [0; 5];
-        Status { session, bar, start, look: start, since, sent, zero, lost, rate: None, listeners, told: None }
+        Status { session, bar, start, look: start, since, sent, zero, lost, rate: None, listeners, shown: None }
     }
 
     /// Of one command, whether it was sent, and who listens.
@@ -55,17 +55,17 @@ impl<'a> Status<'a> {
             (self.look, self.since) = (Instant::now(), 0);
             self.bar.set_message(self.line(command));
         }
-        let word = command.halt.as_ref().map_or("moves", policy_align::Halt::word);
-        let changed = self.told != Some(word);
-        self.told = Some(word);
+        let word = command.halt.as_ref().map_or("moving", policy_align::Halt::word);
+        let changed = self.shown != Some(word);
+        self.shown = Some(word);
         if self.session.json {
             if changed || looks {
                 tell(&Output::json(&self.document(command), Exit::Done).text)?;
             }
         } else if changed && !self.session.quiet {
             let line = match &command.halt {
-                Some(halt) => format!("stands: {halt}"),
-                None => "moves: the state is within the data".to_owned(),
+                Some(halt) => format!("stopped: {halt}"),
+                None => "moving: the state is within the data".to_owned(),
             };
             self.bar.suspend(|| complain(&line));
         }
@@ -77,7 +77,7 @@ impl<'a> Status<'a> {
         let age = command.age.map_or_else(|| "no state".to_owned(), |age| format!("state {} ms old", short(1e3 * age)));
         let support = command.support.map_or_else(String::new, |support| format!(", support {}", short(support)));
         let unheard = if self.listeners == 0 { ", no subscriber" } else { "" };
-        let doing = if command.halt.is_some() { "stands" } else { "moves" };
+        let doing = if command.halt.is_some() { "stopped" } else { "moving" };
         format!("{doing}  {} Hz, {age}{support}{unheard}", number(self.rate))
     }
 

@@ -18,9 +18,9 @@ use crate::cli::trust_files::load;
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Subscribes to joint states, finds the channels of the model among the joints by
-name, and publishes velocities, in rad/s or m/s. It commands zero, and says why,
+name, and publishes velocities, in rad/s or m/s. It commands zero, and prints why,
 
-  outside the data, as `predict` has it;
+  outside the data, like `predict`;
   while a joint is missing, not finite, or older than --stale;
   at its end, also after Ctrl-C. After a power cut or `kill -9` nothing sends
   zero: let the controller itself stop when no commands come.
@@ -33,7 +33,7 @@ Example:
 pub(crate) struct Serve {
     /// A model that `fit` has written
     model: PathBuf,
-    /// Be a node of ROS 2
+    /// Run as a node of ROS 2
     #[arg(long, required = true)]
     ros2: bool,
     /// Topic of joint states, sensor_msgs/JointState
@@ -48,7 +48,7 @@ pub(crate) struct Serve {
     /// Joints in the order of the command, as CHANNEL or CHANNEL=JOINT
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     joints: Vec<String>,
-    /// Context of a model that has one, as goal_x=0.4,goal_y=0.1
+    /// Context of a model that has one, e.g. goal_x=0.4,goal_y=0.1
     #[arg(long, value_name = "NAME=NUMBER", value_delimiter = ',', allow_hyphen_values = true)]
     context: Vec<String>,
     /// Commands per second

@@ -6,7 +6,7 @@ use crate::stretches::segmentation::{DIMENSION, PARAMETER, SEGMENT};
 
 /// Nothing, or a constraint that is constant in a space.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Hypothesis {
+pub(super) enum StretchKind {
     Free,
     Constrained { space: usize, rank: usize },
 }
@@ -23,9 +23,9 @@ pub(super) struct Movement {
 impl Movement {
     /// (S28): the least cost of samples `begin..end` and what it is of; and, of the recorded coordinates, minus twice the log likelihood
     /// of each rank from 1 on.
-    pub(super) fn cheapest(&self, begin: usize, end: usize) -> ((f64, Hypothesis), Vec<f64>) {
+    pub(super) fn cheapest(&self, begin: usize, end: usize) -> ((f64, StretchKind), Vec<f64>) {
         let none = self.disagreement.square(begin, end);
-        let mut best = (none + SEGMENT, Hypothesis::Free);
+        let mut best = (none + SEGMENT, StretchKind::Free);
         let mut of_ranks = Vec::new();
         for (space, view) in self.views.iter().enumerate() {
             let Some(view) = view else { continue };
@@ -40,7 +40,7 @@ impl Movement {
             if let Some((cost, rank)) = self.best_rank(view, &directions, (begin, end)) {
                 let cost = cost + self.rarity[space];
                 if cost < best.0 {
-                    best = (cost, Hypothesis::Constrained { space, rank });
+                    best = (cost, StretchKind::Constrained { space, rank });
                 }
             }
         }
@@ -77,7 +77,7 @@ impl Movement {
     }
 
     /// (S28) of a part in each space, however rare; infinite where no rank is possible.
-    pub(super) fn costs_in_spaces(&self, part: &Part<Hypothesis>) -> Vec<f64> {
+    pub(super) fn costs_in_spaces(&self, part: &Part<StretchKind>) -> Vec<f64> {
         let ends = (part.begin, part.end);
         let of = |view: &View| {
             let directions = view.directions(ends.0, ends.1, self.disagreement.noise);
@@ -95,14 +95,14 @@ impl Movement {
     }
 
     /// The view and the directions of a part with a constraint, and its rank.
-    pub(super) fn constraint(&self, part: &Part<Hypothesis>) -> Option<(&View, Directions, usize)> {
-        let Hypothesis::Constrained { space, rank } = part.kind else { return None };
+    pub(super) fn constraint(&self, part: &Part<StretchKind>) -> Option<(&View, Directions, usize)> {
+        let StretchKind::Constrained { space, rank } = part.kind else { return None };
         let view = self.views[space].as_ref()?;
         Some((view, view.directions(part.begin, part.end, self.disagreement.noise), rank))
     }
 
     /// |Nd|² of a part's samples, each over the dimensions that its constraint leaves.
-    pub(super) fn left(&self, part: &Part<Hypothesis>) -> Vec<f64> {
+    pub(super) fn left(&self, part: &Part<StretchKind>) -> Vec<f64> {
         let of = &self.disagreement.of;
         let squares = |at: usize| of.column(at).norm_squared();
         let (rank, squares): (usize, Vec<f64>) = match self.constraint(part) {
@@ -127,9 +127,9 @@ pub(super) struct MovementCosts<'a> {
 }
 
 impl Costs for MovementCosts<'_> {
-    type Kind = Hypothesis;
+    type Kind = StretchKind;
 
-    fn cost(&mut self, begin: usize, end: usize) -> (f64, Hypothesis) {
+    fn cost(&mut self, begin: usize, end: usize) -> (f64, StretchKind) {
         let (cheapest, of_ranks) = self.movement.cheapest(begin, end);
         self.left.see(begin, &of_ranks);
         cheapest
