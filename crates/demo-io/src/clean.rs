@@ -33,12 +33,11 @@ pub(crate) fn clean(drafts: &mut RawRecordings, channels: &[String], options: &R
         if options.sort {
             sort(&mut draft);
         }
-        match options.split_gap {
-            Some(longest) => episodes.extend(split(draft, longest)),
-            None => {
-                refuse_backwards(&draft, drafts.word)?;
-                episodes.push(draft);
-            }
+        if let Some(longest) = options.split_gap {
+            episodes.extend(split(draft, longest));
+        } else {
+            refuse_backwards(&draft, drafts.word)?;
+            episodes.push(draft);
         }
     }
     drafts.findings.extend(not_recorded(missing, samples, options.nan));

@@ -1,33 +1,22 @@
 //! Curved surfaces that no movement crosses: found from states and directions alone, without a policy.
 
 use gp::{Hypothesis, Rows};
-use motion::upper_median;
-use nalgebra::{Cholesky, DMatrix, DVector, DVectorView, SymmetricEigen};
+use nalgebra::{DVector, DVectorView, SymmetricEigen};
 use prepare::direction_by_channels;
 use prepare::numbers::{percent, short};
 
 use super::numbers::TrustNumbers;
+use super::quadratics::{Quadratic, Quadratics};
 use crate::{Finding, StateChannel, Verdict};
 
-/// Rows at most, and dimensions: the functions that are tried have 90 coefficients in twelve.
-const ROWS: usize = 3000;
+/// Dimensions at most: in twelve the functions that are tried have 90 coefficients.
 const DIMENSIONS: usize = 12;
-/// Movements are left out in so many parts.
-const PARTS: usize = 5;
 /// Coverage below which a surface is doubtful if movements seem unconstrained.
 const FREE: f64 = 0.01;
 /// Share of the largest curvature by which others may differ from it, or from 0, to be one with it.
 const ALIKE: f64 = 0.1;
 /// Standard deviation of radii, as a share, up to which all movements stay on one sphere.
 const THIN: f64 = 0.03;
-
-/// Functions s(z) = bᵀz + ½ zᵀCz of states z = (x − mean)/spread, and how movements cross their level sets.
-struct Quadratics {
-    mean: DVector<f64>,
-    spread: f64,
-    /// Of each movement, Σ w(∇s·û)² and Σ w|∇s|²/n as quadratic forms of the coefficients.
-    movements: Vec<[DMatrix<f64>; 2]>,
-}
 
 /// A finding if no movement crosses the level sets of a function (S46); none where movements hardly vary along a direction, which is
 /// [`TrustNumbers::direction_coverage`].
@@ -40,7 +29,7 @@ pub(crate) fn common_surface(rows: &Rows, state: &[StateChannel], numbers: &Trus
     // Without constraints, movements that run into a cycle leave it seldom.
     let least = if numbers.reading == Hypothesis::Free { FREE } else { TrustNumbers::GOOD_COVERAGE };
     let coverage = quadratics.coverage().filter(|&coverage| coverage < least)?;
-    let surface = quadratics.surface(rows, state)?;
+    let surface = surface(&quadratics, rows, state)?;
     Some(Finding {
         verdict: Verdict::Doubtful,
         what: format!("no movement crosses {surface} (coverage {})", percent(coverage.max(f64::EPSILON))),
@@ -48,155 +37,68 @@ pub(crate) fn common_surface(rows: &Rows, state: &[StateChannel], numbers: &Trus
     })
 }
 
-impl Quadratics {
-    fn of(rows: &Rows, n: usize) -> Option<Quadratics> {
-        let every = rows.len().div_ceil(ROWS).max(1);
-        let chosen: Vec<usize> = (0..rows.len()).step_by(every).collect();
-        let states = rows.states().rows(0, n).select_columns(&chosen);
-        let mean = states.column_mean();
-        let squares: f64 = states.column_iter().map(|x| (x - &mean).norm_squared()).sum();
-        let spread = (squares / (n * chosen.len()) as f64).sqrt();
-        let speed = |&row: &usize| rows.velocities().column(row).norm();
-        let usual = upper_median(chosen.iter().map(speed).filter(|&speed| speed > 0.0).collect())?;
-        let count = rows.indices().iter().map(|index| index.trajectory).max()? + 1;
-        let coefficients = n + n * (n + 1) / 2;
-        let zero = || [DMatrix::zeros(coefficients, coefficients), DMatrix::zeros(coefficients, coefficients)];
-        let mut movements: Vec<_> = (0..count).map(|_| zero()).collect();
-        for (row, x) in chosen.iter().zip(states.column_iter()) {
-            let velocity = rows.velocities().column(*row);
-            let Some(direction) = velocity.try_normalize(0.0) else { continue };
-            // Noise turns slow velocities.
-            let weight = (velocity.norm() / usual).min(1.0).powi(2);
-            let gradients = gradients(((x - &mean) / spread).as_view());
-            let [across, all] = &mut movements[rows.indices()[*row].trajectory];
-            across.syger(weight, &(&gradients * &direction), &(&gradients * direction), 1.0);
-            all.gemm(weight / n as f64, &gradients, &gradients.transpose(), 1.0);
-        }
-        movements.iter_mut().for_each(|[across, _]| across.fill_upper_triangle_with_lower_triangle());
-        movements.retain(|[_, all]| all.trace() > 0.0);
-        Some(Quadratics { mean, spread, movements })
+/// In words, what the level sets of the function are that all movements cross least.
+fn surface(quadratics: &Quadratics, rows: &Rows, state: &[StateChannel]) -> Option<String> {
+    let n = state.len();
+    let Quadratic { slope, curvature } = quadratics.least_crossed()?;
+    let general = Some("certain curved surfaces".to_owned());
+    let scale = state[0].scale;
+    if state.iter().any(|channel| (channel.scale / scale - 1.0).abs() > 1e-9) {
+        return general;
     }
-
-    /// (S46): Σ w(∇s·û)²/(Σ w|∇s|²/n) of movements left out, for the function that the others cross least: 1 if they go in all directions
-    /// alike. None with fewer movements than parts.
-    fn coverage(&self) -> Option<f64> {
-        if self.movements.len() < PARTS {
-            return None;
-        }
-        let [mut across, mut all] = [0.0, 0.0];
-        for part in 0..PARTS {
-            let is_out = |&(at, _): &(usize, _)| at % PARTS == part;
-            let others = self.movements.iter().enumerate().filter(|movement| !is_out(movement));
-            let function = least_crossed(others.map(|(_, movement)| movement))?;
-            for (_, [crossed, gradients]) in self.movements.iter().enumerate().filter(is_out) {
-                across += function.dot(&(crossed * &function));
-                all += function.dot(&(gradients * &function));
-            }
-        }
-        Some(across / all)
+    let SymmetricEigen { eigenvectors, eigenvalues } = curvature.symmetric_eigen();
+    let largest = eigenvalues.amax();
+    let sign = eigenvalues[eigenvalues.iamax()].signum();
+    let curved: Vec<usize> = (0..n).filter(|&k| (eigenvalues[k] * sign - largest).abs() <= ALIKE * largest).collect();
+    let is_straight =
+        |k: &usize| eigenvalues[*k].abs().max(eigenvectors.column(*k).dot(&slope).abs()) <= ALIKE * largest;
+    let straight: Vec<usize> = (0..n).filter(is_straight).collect();
+    if curved.len() < 2 || straight.len() > 1 || curved.len() + straight.len() < n {
+        return general;
     }
-
-    /// In words, what the level sets of the function are that all movements cross least.
-    fn surface(&self, rows: &Rows, state: &[StateChannel]) -> Option<String> {
-        let n = state.len();
-        let function = least_crossed(self.movements.iter())?;
-        let mut curvature = DMatrix::zeros(n, n);
-        for (k, (i, j)) in pairs(n).enumerate() {
-            let second = function[n + k] * if i == j { 2.0 } else { 1.0 };
-            curvature[(i, j)] = second;
-            curvature[(j, i)] = second;
-        }
-        let general = Some("certain curved surfaces".to_owned());
-        let scale = state[0].scale;
-        if state.iter().any(|channel| (channel.scale / scale - 1.0).abs() > 1e-9) {
-            return general;
-        }
-        let SymmetricEigen { eigenvectors, eigenvalues } = curvature.symmetric_eigen();
-        let largest = eigenvalues.amax();
-        let sign = eigenvalues[eigenvalues.iamax()].signum();
-        let curved: Vec<usize> =
-            (0..n).filter(|&k| (eigenvalues[k] * sign - largest).abs() <= ALIKE * largest).collect();
-        let slope = function.rows(0, n);
-        let is_straight =
-            |k: &usize| eigenvalues[*k].abs().max(eigenvectors.column(*k).dot(&slope).abs()) <= ALIKE * largest;
-        let straight: Vec<usize> = (0..n).filter(is_straight).collect();
-        if curved.len() < 2 || straight.len() > 1 || curved.len() + straight.len() < n {
-            return general;
-        }
-        // Where the gradient vanishes within the curved directions; along an axis nearest to the mean.
-        let mut centre = DVector::zeros(n);
-        for &k in &curved {
-            let axis = eigenvectors.column(k);
-            centre -= axis * (axis.dot(&slope) / eigenvalues[k]);
-        }
-        let centre = &self.mean + centre * self.spread;
-        let distance = |x: DVectorView<'_, f64>| {
-            let from = x - &centre;
-            curved.iter().map(|&k| eigenvectors.column(k).dot(&from).powi(2)).sum::<f64>().sqrt()
-        };
-        let distances: Vec<f64> = rows.states().column_iter().map(|x| distance(x.rows(0, n))).collect();
-        let radius = distances.iter().sum::<f64>() / distances.len() as f64;
-        let variance = distances.iter().map(|own| (own - radius).powi(2)).sum::<f64>() / distances.len() as f64;
-        // What is nothing beside the radius is rounding.
-        let coordinate = |x: f64| short(if x.abs() > 1e-3 * radius { x / scale } else { 0.0 });
-        let place: Vec<String> =
-            state.iter().zip(&centre).map(|(channel, &x)| format!("{} {}", channel.name, coordinate(x))).collect();
-        let (kind, about) = match (straight.first(), n) {
-            (None, 2) => ("circle", "about".to_owned()),
-            (None, _) => ("sphere", "about".to_owned()),
-            (Some(&axis), _) => {
-                let along = direction_by_channels(eigenvectors.column(axis).as_slice(), state);
-                ("cylinder", format!("with its axis along {along} through"))
-            }
-        };
-        Some(if variance.sqrt() <= THIN * radius {
-            format!("the {kind} of radius {} {about} {}", short(radius / scale), place.join(", "))
-        } else {
-            format!("the {kind}s {about} {}", place.join(", "))
-        })
+    // Where the gradient vanishes within the curved directions; along an axis nearest to the mean.
+    let mut centre = DVector::zeros(n);
+    for &k in &curved {
+        let axis = eigenvectors.column(k);
+        centre -= axis * (axis.dot(&slope) / eigenvalues[k]);
     }
-}
-
-/// i ≤ j, the products of coordinates in their order.
-fn pairs(n: usize) -> impl Iterator<Item = (usize, usize)> {
-    (0..n).flat_map(move |i| (i..n).map(move |j| (i, j)))
-}
-
-/// Gradients of z_i, then of z_i z_j, i ≤ j, at a state z (n): a row each, (n + n(n+1)/2, n).
-fn gradients(z: DVectorView<'_, f64>) -> DMatrix<f64> {
-    let n = z.len();
-    let mut gradients = DMatrix::zeros(n + n * (n + 1) / 2, n);
-    gradients.view_mut((0, 0), (n, n)).fill_with_identity();
-    for (k, (i, j)) in pairs(n).enumerate() {
-        gradients[(n + k, i)] += z[j];
-        gradients[(n + k, j)] += z[i];
-    }
-    gradients
-}
-
-/// Coefficients of the function with the least Σ w(∇s·û)² over Σ w|∇s|²; its gradient has mean square n.
-fn least_crossed<'a>(movements: impl Iterator<Item = &'a [DMatrix<f64>; 2]>) -> Option<DVector<f64>> {
-    let [across, all] = movements.fold(None, |sums: Option<[DMatrix<f64>; 2]>, [across, all]| {
-        Some(sums.map_or_else(|| [across.clone(), all.clone()], |[a, b]| [a + across, b + all]))
-    })?;
-    let size = all.nrows();
-    let jitter = 1e-9 * all.trace() / size as f64;
-    let factor = Cholesky::new(all + DMatrix::identity(size, size) * jitter)?;
-    let lower = factor.l();
-    let left = lower.solve_lower_triangular(&across)?;
-    let whitened = lower.solve_lower_triangular(&left.transpose())?;
-    let eigen = ((&whitened + whitened.transpose()) / 2.0).symmetric_eigen();
-    lower.tr_solve_lower_triangular(&eigen.eigenvectors.column(eigen.eigenvalues.imin()))
+    let centre = &quadratics.mean + centre * quadratics.spread;
+    let distance = |x: DVectorView<'_, f64>| {
+        let from = x - &centre;
+        curved.iter().map(|&k| eigenvectors.column(k).dot(&from).powi(2)).sum::<f64>().sqrt()
+    };
+    let distances: Vec<f64> = rows.states().column_iter().map(|x| distance(x.rows(0, n))).collect();
+    let radius = distances.iter().sum::<f64>() / distances.len() as f64;
+    let variance = distances.iter().map(|own| (own - radius).powi(2)).sum::<f64>() / distances.len() as f64;
+    // What is nothing beside the radius is rounding.
+    let coordinate = |x: f64| short(if x.abs() > 1e-3 * radius { x / scale } else { 0.0 });
+    let place: Vec<String> =
+        state.iter().zip(&centre).map(|(channel, &x)| format!("{} {}", channel.name, coordinate(x))).collect();
+    let (kind, about) = match (straight.first(), n) {
+        (None, 2) => ("circle", "about".to_owned()),
+        (None, _) => ("sphere", "about".to_owned()),
+        (Some(&axis), _) => {
+            let along = direction_by_channels(eigenvectors.column(axis).as_slice(), state);
+            ("cylinder", format!("with its axis along {along} through"))
+        }
+    };
+    Some(if variance.sqrt() <= THIN * radius {
+        format!("the {kind} of radius {} {about} {}", short(radius / scale), place.join(", "))
+    } else {
+        format!("the {kind}s {about} {}", place.join(", "))
+    })
 }
 
 #[cfg(test)]
 mod tests {
     use motion::SampleIndex;
+    use nalgebra::DMatrix;
     use proptest::prelude::*;
     use rand::{RngExt, SeedableRng};
     use rand_chacha::ChaCha8Rng;
 
     use super::*;
+    use crate::trust::quadratics::PARTS;
 
     /// What movements do not leave.
     #[derive(Debug, Clone, Copy)]
@@ -234,17 +136,14 @@ mod tests {
                 normal
             };
             // At distance 1 from the centre or axis.
-            let mut x = match common {
-                Common::Nothing => from,
-                _ => {
-                    let place = centre + &from;
-                    let away = normal(&place);
-                    &place + &away * (1.0 / away.norm() - 1.0)
-                }
-            };
+            let mut x = centre + from;
+            if !matches!(common, Common::Nothing) {
+                let away = normal(&x);
+                x += &away * (1.0 / away.norm() - 1.0);
+            }
             for sample in 0..40 {
                 let normals = match common {
-                    Common::Nothing => DMatrix::from_columns(&[own.clone()]),
+                    Common::Nothing => DMatrix::from_columns(std::slice::from_ref(&own)),
                     _ => DMatrix::from_columns(&[normal(&x), own.clone()]),
                 };
                 let q = normals.qr().q();
@@ -276,7 +175,7 @@ mod tests {
             let centre = any_vector(n, &mut rng);
             let rows = movements(common, &centre, (40, noise), &mut rng);
             prop_assert!(coverage(&rows, n).unwrap() < 0.05);
-            let said = Quadratics::of(&rows, n).unwrap().surface(&rows, &channels(n, scale)).unwrap();
+            let said = surface(&Quadratics::of(&rows, n).unwrap(), &rows, &channels(n, scale)).unwrap();
             prop_assert!(said.starts_with(&format!("the {kind} of radius ")), "{said}");
             let after = |word: &str| {
                 let text = said.split(word).nth(1).unwrap();
@@ -295,24 +194,6 @@ mod tests {
             let found = coverage(&movements(Common::Nothing, &centre, (count, noise), &mut rng), n);
             prop_assert!(found.is_none_or(|coverage| coverage > 0.1), "{found:?}");
             prop_assert_eq!(found.is_none(), count < PARTS);
-        }
-    }
-
-    /// ∇s by differences, and the coverage of a function by its literal sums.
-    #[test]
-    fn gradients_are_those_of_the_function() {
-        let mut rng = ChaCha8Rng::seed_from_u64(1);
-        let value = |z: &DVector<f64>, c: &DVector<f64>| {
-            let squares = pairs(3).map(|(i, j)| z[i] * z[j]);
-            z.iter().copied().chain(squares).zip(c.iter()).map(|(term, c)| term * c).sum::<f64>()
-        };
-        let (z, c) = (any_vector(3, &mut rng), any_vector(9, &mut rng));
-        let gradient = gradients(z.as_view()).transpose() * &c;
-        for k in 0..3 {
-            let mut step = DVector::zeros(3);
-            step[k] = 1e-6;
-            let slope = (value(&(&z + &step), &c) - value(&(&z - &step), &c)) / 2e-6;
-            assert!((slope - gradient[k]).abs() < 1e-8);
         }
     }
 }

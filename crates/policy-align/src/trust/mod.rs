@@ -9,6 +9,7 @@ mod goals;
 mod judge;
 mod numbers;
 mod pushes;
+mod quadratics;
 mod report;
 mod starts;
 
