@@ -12,6 +12,9 @@ use motion::{Channel, Finding, is_called_context};
 /// What LeRobot calls the places of objects.
 pub(crate) const ENVIRONMENT: &str = "observation.environment_state";
 
+/// A clock that goes back to this share of what has passed begins again.
+const BEGINNING: f64 = 0.1;
+
 /// Checks and repairs every episode, as the options say. Some `channels` are those of other recordings of the set.
 pub(crate) fn clean(drafts: &mut RawRecordings, channels: &[String], options: &ReadOptions) -> Result<(), ReadError> {
     positive(options.split_gap, "--split-gap")?;
@@ -193,7 +196,11 @@ fn sort(draft: &mut RawEpisode) {
 fn refuse_backwards(draft: &RawEpisode, word: &str) -> Result<(), ReadError> {
     let Some(at) = draft.times.windows(2).position(|pair| pair[1] < pair[0]) else { return Ok(()) };
     let what = format!("stamps go back by {} s", rounded(draft.times[at] - draft.times[at + 1]));
-    let remedy = "--split-gap 1 if a new movement begins here (cuts where stamps go back or pause for 1 s), or --sort (puts samples in the order of their stamps)";
+    let cut = "--split-gap 1 if a new movement begins here (cuts where stamps go back or pause for 1 s)";
+    let sort = "--sort (puts samples in the order of their stamps)";
+    let begins_again = draft.times[at + 1] - draft.times[0] <= BEGINNING * (draft.times[at] - draft.times[0]);
+    let (first, second) = if begins_again { (cut, sort) } else { (sort, cut) };
+    let remedy = format!("{first}, or {second}");
     Err(ReadError::TimeBackwards(Fault::new(what, draft.place(at + 1, word), remedy)))
 }
 

@@ -54,6 +54,7 @@ impl Refusal {
     pub(crate) fn prepare(error: &PrepareError, place: &str, episodes: &[String]) -> Self {
         let otherwise = match error {
             PrepareError::Scale { name, .. } => format!("scale={{'{name}': 10.0}}"),
+            PrepareError::Episode { source: MotionError::TimeStep { .. }, .. } => "dt=0.02, in seconds".to_owned(),
             _ => "other recordings".to_owned(),
         };
         let refusal = Refusal::of_text(&error.to_string(), place, &otherwise);

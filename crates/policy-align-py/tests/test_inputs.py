@@ -143,6 +143,9 @@ def test_movements_that_cannot_be_learnt_from_are_refused() -> None:
     assert "11 velocities for 12" in said(positions, velocities=velocities[1:]).what
     assert said([]).what == "there is no episode"
     assert "time step 0 s" in said(positions, dt=0.0).what
+    assert said(positions, dt=-1.0).hint == "dt=0.02, in seconds"
+    with pytest.raises(TypeError, match="a number of seconds"):
+        SlopeGp().fit(positions, dt="a")  # type: ignore[arg-type]
     assert "time step NaN s" in said(positions, dt=np.nan).what
     assert said(positions, dt=None).code == "NoTime"
     assert "40 samples" in said(positions, times=[[0.0, 1.0]] * 12).what

@@ -65,7 +65,7 @@ def test_a_window_is_given_in_samples_or_seconds() -> None:
     assert smoothing("off") == ["none: positions as recorded"]
     with pytest.raises(PolicyAlignError) as error:
         smoothing(6)
-    assert error.value.hint == 'an odd number of at least 5, as in smooth=9, or seconds, as in smooth="4.50e-1s"'
+    assert error.value.hint == 'an odd number of at least 5, as in smooth=9, or seconds, as in smooth="0.45s"'
 
 
 @pytest.mark.parametrize("learner", [PolicyAlign(folds=2.5), SlopeGp(random_state="one"), SlopeGp(max_rows=-1)])
@@ -121,7 +121,7 @@ def test_hints_name_arguments(tmp_path) -> None:
         'nan="drop" (leaves the sample out) or nan="fill" (interpolates gaps of up to 3 samples)'
     )
     assert hint("x,y\n1,2\n2,3\n").startswith("dt=SECONDS (the time between samples), or time= with")
-    assert hint("t,x\n0,1\n0.2,2\n0.1,3\n").startswith("sort= (puts samples in the order of their stamps), or episode=")
+    assert hint("t,x\n0,1\n0.2,2\n0.1,3\n").startswith("sort= (puts samples in the order of their stamps), or split_gap=1 if a new movement")
     with pytest.raises(PolicyAlignError, match="unknown field `speed`"):
         Demonstrations.read(TOY, speed="x")
 

@@ -400,12 +400,9 @@ def _stamps(values: Any) -> Floats:
 
 def _seconds(dt: Any) -> float:
     try:
-        seconds = float(dt)
+        return float(dt)
     except (TypeError, ValueError):
         raise TypeError(f"dt is {dt!r}; a number of seconds is needed") from None
-    if not (0 < seconds < float("inf")):
-        raise PolicyAlignError(f"dt is {seconds:g}", "dt", "a positive, finite number of seconds")
-    return seconds
 
 
 def _same_length(given: Sequence[Any], expected: int, name: str, what: str) -> None:
