@@ -18,6 +18,14 @@ pub(crate) struct Along {
     pub(crate) wanted: f64,
 }
 
+/// [`along`], by movement.
+pub(crate) fn along_movements(policy: &dyn Policy, rows: &Rows) -> Vec<Vec<Along>> {
+    let count = rows.indices().iter().map(|index| index.trajectory + 1).max().unwrap_or(0);
+    let mut movements: Vec<Vec<Along>> = std::iter::repeat_with(Vec::new).take(count).collect();
+    along(policy, rows).for_each(|sample| movements[sample.trajectory].push(sample));
+    movements
+}
+
 /// So many states are asked for together.
 const BLOCK: usize = 4096;
 
@@ -34,4 +42,19 @@ pub(crate) fn along<'a>(policy: &'a dyn Policy, rows: &'a Rows) -> impl Iterator
             Some(Along { trajectory, sample, direction, speed: velocity.norm(), wanted })
         })
     })
+}
+
+/// π(x) = −x in the plane.
+#[cfg(test)]
+pub(crate) struct Bowl;
+
+#[cfg(test)]
+impl Policy for Bowl {
+    fn dim(&self) -> usize {
+        2
+    }
+
+    fn action_into(&self, state: nalgebra::DVectorView<'_, f64>, mut action: nalgebra::DVectorViewMut<'_, f64>) {
+        action.copy_from(&-state);
+    }
 }

@@ -1,5 +1,3 @@
-use std::f64::consts::TAU;
-
 use kinematics::{Joint, JointKind, KinematicsError, RobotModel};
 use nalgebra::{DMatrix, DMatrixView, DVector, DVectorView};
 use prepare::StateChannel;
@@ -89,22 +87,17 @@ pub(crate) fn joint_of(robot: &RobotModel, channel: &str) -> Option<usize> {
 }
 
 /// Names channels that are joints which turn, whose numbers would be many turns as radians, and have no unit.
-///
-/// # Errors
-/// In a sentence: what is wrong with the text of the URDF.
-pub fn joints_in_degrees(text: &str, state: &[StateChannel]) -> Result<Option<Finding>, String> {
-    let robot = RobotModel::from_urdf(text).map_err(|error| error.to_string())?;
+pub fn joints_in_degrees(robot: &RobotModel, state: &[StateChannel]) -> Option<Finding> {
     let turns = |channel: &&StateChannel| {
-        let kind = joint_of(&robot, &channel.name).map(|place| robot.joints()[place].kind());
-        let many = channel.low.abs().max(channel.high.abs()) > TURNS * TAU;
-        channel.unit.is_none() && many && !matches!(kind, None | Some(JointKind::Prismatic))
+        let kind = joint_of(robot, &channel.name).map(|place| robot.joints()[place].kind());
+        channel.unit.is_none() && channel.turns() > TURNS && !matches!(kind, None | Some(JointKind::Prismatic))
     };
     let names: Vec<&str> = state.iter().filter(turns).map(|channel| channel.name.as_str()).collect();
-    Ok((!names.is_empty()).then(|| Finding {
+    (!names.is_empty()).then(|| Finding {
         verdict: Verdict::Doubtful,
         what: format!("joints were taken to be in radians, but move by many turns: {}", names.join(", ")),
         next: format!("if they are in degrees: --degrees {}", names.join(",")),
-    }))
+    })
 }
 
 /// What divides the numbers that are learnt from, of channels that are joints, into radians and metres, (n).
@@ -167,12 +160,12 @@ mod tests {
             high,
             median: 0.0,
         };
-        let found = |state: &[StateChannel]| joints_in_degrees(urdf, state).unwrap().map(|finding| finding.next);
+        let robot = RobotModel::from_urdf(urdf).unwrap();
+        let found = |state: &[StateChannel]| joints_in_degrees(&robot, state).map(|finding| finding.next);
         let remedy = "if they are in degrees: --degrees elbow";
         assert_eq!(found(&[channel("elbow", None, 80.0), channel("rail", None, 80.0)]).as_deref(), Some(remedy));
         assert_eq!(found(&[channel("elbow", None, 6.5)]), None);
         assert_eq!(found(&[channel("elbow [deg]", Some("deg"), 80.0)]), None);
-        let robot = RobotModel::from_urdf(urdf).unwrap();
         assert_eq!(ChannelJoints::of(&robot, ["rail", "elbow [deg]"].into_iter()).unwrap().places, [1, 0]);
         let refused = ChannelJoints::of(&robot, ["q1"].into_iter()).unwrap_err();
         assert_eq!(refused, "channel 'q1' is not a joint of the robot, which has elbow, rail");

@@ -55,8 +55,8 @@
 //! - **The same constraint in every recording** hides part of the policy; no learner can recover it. The verdict is
 //!   then doubtful.
 //! - **Constraints that push** (A u = b with b ≠ 0) are recovered only while A and b stay constant for some twenty
-//!   samples, and oblique projections not at all.
-//! - **Motion that depends on more than the recorded state** (time, a moving target): "do not use". What is constant during a
+//!   samples, and oblique projections only if a robot's inertia makes them so.
+//! - **Motion that depends on more than the recorded state** (time, a moving target): mostly "doubtful" or "do not use". What is constant during a
 //!   movement, such as a goal or a load, can be context: [`Model::in_context`].
 //! - **Mixed units**: constraints act at right angles in some unit. [`fit()`] learns it if the data determine it;
 //!   [`PrepareOptions::scale`] chooses it.

@@ -1,3 +1,5 @@
+use std::f64::consts::TAU;
+
 use serde::{Deserialize, Serialize};
 
 /// A dimension of the state or of the context, in the user's units.
@@ -19,6 +21,11 @@ pub struct StateChannel {
 }
 
 impl StateChannel {
+    /// The largest distance from 0 in turns, if it is an angle in radians.
+    pub fn turns(&self) -> f64 {
+        self.low.abs().max(self.high.abs()) / TAU
+    }
+
     /// Factors of those of these channels that have one, as [`PrepareOptions::scale`](crate::PrepareOptions::scale) takes them.
     pub fn factors<'a>(channels: impl IntoIterator<Item = &'a StateChannel>) -> Vec<(String, f64)> {
         let scaled = channels.into_iter().filter(|channel| channel.scale != 1.0);

@@ -1,5 +1,3 @@
-use std::f64::consts::TAU;
-
 use motion::Verdict;
 
 use crate::StateChannel;
@@ -34,5 +32,5 @@ fn in_degrees(channel: &StateChannel) -> bool {
         ["joint", "angle", "theta", "yaw", "pitch", "roll"].iter().any(|word| name.contains(word)) || numbered("q");
     let named =
         name.split(['_', '.', ' ', '[', '(', ']', ')']).any(|word| matches!(word, "deg" | "degree" | "degrees"));
-    named || (joint && channel.low.abs().max(channel.high.abs()) > 1.1 * TAU)
+    named || (joint && channel.turns() > 1.1)
 }

@@ -41,7 +41,7 @@ pub fn percent(share: f64) -> String {
 }
 
 /// An estimate of the share of a whole, which may exceed it, in percent.
-pub(crate) fn percent_of_all(share: f64) -> String {
+pub fn percent_of_all(share: f64) -> String {
     percent(share.min(1.0))
 }
 

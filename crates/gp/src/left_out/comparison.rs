@@ -1,13 +1,12 @@
 //! How much two models differ, and whether one is better by more than chance.
 
+use motion::mean_and_error;
 use nalgebra::DMatrix;
 
 /// mean/(sd/√K), sd with K − 1; 0 where nothing varies.
 pub(crate) fn t_of_mean(values: &[f64]) -> f64 {
-    let count = values.len() as f64;
-    let mean = values.iter().sum::<f64>() / count;
-    let variance = values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / (count - 1.0);
-    let t = mean / (variance / count).sqrt();
+    let (mean, error) = mean_and_error(values);
+    let t = mean / error;
     if t.is_finite() { t } else { 0.0 }
 }
 

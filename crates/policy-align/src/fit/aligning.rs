@@ -93,9 +93,7 @@ impl Tried {
     /// Standard error of E over folds.
     fn standard_error(&self) -> f64 {
         let errors: Vec<f64> = self.folds.iter().map(|fold| fold.to_choose()).collect();
-        let count = errors.len() as f64;
-        let mean = errors.iter().sum::<f64>() / count;
-        (errors.iter().map(|error| (error - mean).powi(2)).sum::<f64>() / (count * (count - 1.0))).sqrt()
+        motion::mean_and_error(&errors).1
     }
 }
 

@@ -23,15 +23,14 @@ pub(super) fn weighed(
     prepared: &Prepared,
     rows: &Rows,
     plain: &AutoFit,
-    options: &FitOptions,
+    (robot, options): (Option<&RobotModel>, &FitOptions),
 ) -> Result<Option<Weighed>, FitError> {
-    let Some(text) = &options.robot else { return Ok(None) };
+    let Some(robot) = robot else { return Ok(None) };
     let refused = |error: KinematicsError| FitError::Robot { reason: error.to_string() };
-    let robot = RobotModel::from_urdf(text).map_err(refused)?;
-    let joints = ChannelJoints::of(&robot, prepared.state.iter().map(|channel| channel.name.as_str()));
+    let joints = ChannelJoints::of(robot, prepared.state.iter().map(|channel| channel.name.as_str()));
     let joints = joints.map_err(|reason| FitError::Robot { reason })?;
     let scales = scales_of_joints(&prepared.state);
-    let momenta = momenta(&robot, &joints, &scales, rows).map_err(refused)?;
+    let momenta = momenta(robot, &joints, &scales, rows).map_err(refused)?;
     let Ok(rows) = rows.clone().with_momenta(momenta) else {
         let no_mass = "its mass matrix is singular: some joints move links without masses only, and no link at the end of a chain is moved by the channels alone; give each link <inertial>";
         let of_use = !rows.task_spaces().is_empty();

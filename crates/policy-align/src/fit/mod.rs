@@ -21,10 +21,12 @@ pub use progress::{Progress, Step};
 pub(crate) use recorded_rows::{averaged, cleaning, least_noisy_rows, rows};
 
 use gp::{AutoFit, Grouping, LeftOutRow, TrajectoryErrors};
+use kinematics::RobotModel;
 use motion::{LearntPolicy, Policy};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
+use crate::along::along_movements;
 use crate::channel_joints::joints_in_degrees;
 use crate::trust::{
     AlignedNumbers, CommonPlane, TrustNumbers, VerdictInput, common_surface, differing_goals, friction, judge, pushed,
@@ -71,10 +73,12 @@ pub fn fit_with(
     let comparable = if prepared.context.is_empty() { None } else { Some(context::comparable(prepared, options)?) };
     let prepared = comparable.as_ref().unwrap_or(prepared);
     let rows = with_digests(rows(prepared)?, prepared, digests)?;
-    let (rows, links) = LinkNames::with_spaces(rows, prepared, options)?;
+    let robot = options.robot.as_deref().map(RobotModel::from_urdf).transpose();
+    let robot = robot.map_err(|error| FitError::Robot { reason: error.to_string() })?;
+    let (rows, links) = LinkNames::with_spaces(rows, prepared, robot.as_ref())?;
     progress.begin(1, steps, "learning with and without constraints")?;
     let readings = learn(&rows, options)?;
-    let weighed = inertia::weighed(prepared, &rows, &readings, options)?;
+    let weighed = inertia::weighed(prepared, &rows, &readings, (robot.as_ref(), options))?;
     let rescaled = match &weighed {
         Some(_) => None,
         None => units::learnt(prepared, &rows, &readings, options)?,
@@ -86,7 +90,7 @@ pub fn fit_with(
             // Both would take twice the memory.
             drop((rows, readings));
             let rows = with_digests(recorded_rows::rows(rescaled)?, rescaled, digests)?;
-            let (rows, _) = LinkNames::with_spaces(rows, rescaled, options)?;
+            let (rows, _) = LinkNames::with_spaces(rows, rescaled, robot.as_ref())?;
             let readings = learn(&rows, options)?;
             (rescaled, rows, readings)
         }
@@ -118,15 +122,14 @@ pub fn fit_with(
         let learnt = options.learner != LearnerChoice::PolicyAlign && takes_slope(&readings, options.learner);
         pushed(push, learnt, prepared, &mut findings);
     }
-    // Both compare velocities with the policy's part along them, which another metric turns.
+    // All compare velocities with the policy's part along them, which another metric turns.
     if rows.momenta().is_none() {
-        findings.extend(differing_goals(policy, prepared, &rows, &numbers));
-        findings.extend(friction(policy, &rows));
-        findings.extend(slow_starts(policy, &rows));
+        let movements = along_movements(policy, &rows);
+        findings.extend(differing_goals(&movements, prepared, &numbers));
+        findings.extend(friction(&movements, rows.len()));
+        findings.extend(slow_starts(&movements, &rows));
     }
-    if let Some(robot) = &options.robot {
-        findings.extend(joints_in_degrees(robot, &prepared.state).map_err(|reason| FitError::Robot { reason })?);
-    }
+    findings.extend(robot.and_then(|robot| joints_in_degrees(&robot, &prepared.state)));
     findings.extend(plane(prepared, &numbers));
     findings.extend(common_surface(&rows, &prepared.state, &numbers));
     let trust =

@@ -34,16 +34,15 @@ impl TaskLinks {
         Ok(TaskLinks { links: named.into_iter().map(link).collect::<Result<_, String>>()? })
     }
 
-    /// Of the text of a URDF: the last links of its chains, as far as the channels alone move them; none where they are too many to try
+    /// Of a robot: the last links of its chains, as far as the channels alone move them; none where they are too many to try
     /// all.
     ///
     /// # Errors
-    /// In a sentence: what is wrong with the text or a channel.
-    pub(crate) fn moved_by(text: &str, channels: &[String]) -> Result<Self, String> {
-        let robot = RobotModel::from_urdf(text).map_err(|error| error.to_string())?;
-        ChannelJoints::of(&robot, channels.iter().map(String::as_str))?;
-        let link = |name: String| Some((name.clone(), LinkPoint::new(&robot, &name, channels).ok()?));
-        let links: Vec<_> = last_links(&robot).into_iter().filter_map(link).collect();
+    /// In a sentence: which channel is not a joint.
+    pub(crate) fn moved_by(robot: &RobotModel, channels: &[String]) -> Result<Self, String> {
+        ChannelJoints::of(robot, channels.iter().map(String::as_str))?;
+        let link = |name: String| Some((name.clone(), LinkPoint::new(robot, &name, channels).ok()?));
+        let links: Vec<_> = last_links(robot).into_iter().filter_map(link).collect();
         Ok(TaskLinks { links: if links.len() > MOST_LINKS { Vec::new() } else { links } })
     }
 

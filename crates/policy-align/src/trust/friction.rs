@@ -1,10 +1,9 @@
 //! Movements that are slower than the policy's component along them.
 
-use motion::Policy;
 use nalgebra::{Matrix2, Vector2};
 use prepare::numbers::percent;
 
-use crate::along::{Along, along};
+use crate::along::Along;
 use crate::{Finding, Verdict};
 
 /// Least missing speed, as a share of the root mean square, and its t over movements: friction has a t of 5 and more, all else below 3.5. The policy
@@ -14,9 +13,9 @@ const LEAST_T: f64 = 4.0;
 /// Fewer movements determine no t.
 const FEW: usize = 5;
 
-/// Says that what constraints turn aside is slower than r = nᵀπ, by about the same everywhere.
-pub(crate) fn friction(policy: &dyn Policy, rows: &gp::Rows) -> Option<Finding> {
-    let (missing, t) = missing_speed(policy, rows)?;
+/// Says that what constraints turn aside is slower than r = nᵀπ, by about the same everywhere; of `rows` rows, those that move by movement.
+pub(crate) fn friction(movements: &[Vec<Along>], rows: usize) -> Option<Finding> {
+    let (missing, t) = missing_speed(movements, rows)?;
     (missing > MISSING && t > LEAST_T).then(|| Finding {
         verdict: Verdict::Doubtful,
         what: format!(
@@ -28,47 +27,34 @@ pub(crate) fn friction(policy: &dyn Policy, rows: &gp::Rows) -> Option<Finding> 
 }
 
 /// Least squares of r − nᵀπ̂ = −f + ε nᵀπ̂ over rows: f in root mean squares of the speed, and its t with movements as units.
-fn missing_speed(policy: &dyn Policy, rows: &gp::Rows) -> Option<(f64, f64)> {
-    let movements = rows.indices().iter().map(|index| index.trajectory).max()? + 1;
-    let mut samples = vec![Vec::new(); movements];
+fn missing_speed(movements: &[Vec<Along>], rows: usize) -> Option<(f64, f64)> {
+    let parts = |sample: &Along| (Vector2::new(-1.0, sample.wanted), sample.speed - sample.wanted);
     let (mut matrix, mut vector, mut power) = (Matrix2::zeros(), Vector2::zeros(), 0.0);
-    for Along { trajectory, speed, wanted, .. } in along(policy, rows) {
-        let (factors, error) = (Vector2::new(-1.0, wanted), speed - wanted);
+    for sample in movements.iter().flatten() {
+        let (factors, error) = parts(sample);
         matrix += factors * factors.transpose();
         vector += factors * error;
-        power += speed * speed;
-        samples[trajectory].push((factors, error));
+        power += sample.speed * sample.speed;
     }
     let inverse = matrix.try_inverse()?;
     let fit = inverse * vector;
-    let influence = |samples: &Vec<(Vector2<f64>, f64)>| {
-        samples.iter().map(|(factors, error)| (inverse * factors).x * (error - factors.dot(&fit))).sum::<f64>()
+    let influence = |samples: &Vec<Along>| {
+        let each = samples.iter().map(parts);
+        each.map(|(factors, error)| (inverse * factors).x * (error - factors.dot(&fit))).sum::<f64>()
     };
-    let deviation = samples.iter().map(|samples| influence(samples).powi(2)).sum::<f64>().sqrt();
-    let counted = samples.iter().filter(|samples| !samples.is_empty()).count();
-    (counted >= FEW).then(|| (fit.x / (power / rows.len() as f64).sqrt(), fit.x / deviation))
+    let deviation = movements.iter().map(|samples| influence(samples).powi(2)).sum::<f64>().sqrt();
+    let counted = movements.iter().filter(|samples| !samples.is_empty()).count();
+    (counted >= FEW).then(|| (fit.x / (power / rows as f64).sqrt(), fit.x / deviation))
 }
 
 #[cfg(test)]
 mod tests {
     use motion::SampleIndex;
-    use nalgebra::{DMatrix, DVector, DVectorView, DVectorViewMut};
+    use nalgebra::{DMatrix, DVector};
     use proptest::prelude::*;
 
     use super::*;
-
-    /// π(x) = −x.
-    struct Bowl;
-
-    impl Policy for Bowl {
-        fn dim(&self) -> usize {
-            2
-        }
-
-        fn action_into(&self, state: DVectorView<'_, f64>, mut action: DVectorViewMut<'_, f64>) {
-            action.copy_from(&-state);
-        }
-    }
+    use crate::along::{Bowl, along_movements};
 
     /// Velocities (1 + ε) nᵀπ n, slower by what `slower` makes of the sample, in 12 movements.
     fn rows(gain: f64, seed: u32, slower: impl Fn(usize) -> f64) -> gp::Rows {
@@ -89,14 +75,14 @@ mod tests {
         #[test]
         fn friction_is_what_is_missing(gain in 0.8..1.2f64, friction in 0.05..0.4f64, seed in 0..1000u32) {
             let rows = super::tests::rows(gain, seed, |i| friction * (1.0 + 0.1 * (5.3 * i as f64).sin()));
-            let (missing, t) = missing_speed(&Bowl, &rows).unwrap();
+            let (missing, t) = missing_speed(&along_movements(&Bowl, &rows), rows.len()).unwrap();
             let usual = (rows.velocities().norm_squared() / rows.len() as f64).sqrt();
             prop_assert!((missing * usual / friction - 1.0).abs() < 0.1, "{} {}", missing * usual, friction);
             prop_assert!(t > LEAST_T);
-            let found = super::friction(&Bowl, &rows).unwrap();
+            let found = super::friction(&along_movements(&Bowl, &rows), rows.len()).unwrap();
             prop_assert!(found.what.contains("too slow"));
             let noise = super::tests::rows(gain, seed, |i| 0.05 * (7.7 * i as f64).sin());
-            prop_assert!(super::friction(&Bowl, &noise).is_none());
+            prop_assert!(super::friction(&along_movements(&Bowl, &noise), noise.len()).is_none());
         }
     }
 }

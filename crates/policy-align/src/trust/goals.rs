@@ -1,12 +1,11 @@
 //! Goals that differ from one movement to the next.
 
-use motion::Policy;
 use nalgebra::{DMatrix, DVector};
 use prepare::numbers::percent;
 use prepare::{Prepared, end_places};
 
 use super::numbers::TrustNumbers;
-use crate::along::{Along, along};
+use crate::along::Along;
 use crate::{Finding, Verdict};
 
 /// Share of what the policy does not explain that a constant velocity of each movement explains.
@@ -21,16 +20,15 @@ const NEXT: &str = "if the goal, an object or a load differs, record it and name
 
 /// Says what makes movements differ where the policy does not predict them. It accuses no policy that does, with however many goals.
 pub(crate) fn differing_goals(
-    policy: &dyn Policy,
+    movements: &[Vec<Along>],
     prepared: &Prepared,
-    rows: &gp::Rows,
     numbers: &TrustNumbers,
 ) -> Option<Finding> {
     if predicts(numbers) || numbers.step_noise > NOISY {
         return None;
     }
     let places = end_places(&prepared.demonstrations).filter(|&places| places > 1);
-    let what = match (places, own_share(policy, rows)) {
+    let what = match (places, own_share(movements)) {
         (Some(places), _) => format!("movements are not predicted well and end at {places} places"),
         (None, Some(share)) if share > OWN && numbers.held_out_error > UNPREDICTED => format!(
             "something that is constant in a movement and differs between them explains {} of the error",
@@ -51,12 +49,9 @@ fn predicts(numbers: &TrustNumbers) -> bool {
 }
 
 /// Share of Σ(r − nᵀπ̂)² that nᵀc explains with one c (n) a movement, learnt from every other quarter of it.
-fn own_share(policy: &dyn Policy, rows: &gp::Rows) -> Option<f64> {
-    let movements = rows.indices().iter().map(|index| index.trajectory).max()? + 1;
-    let mut errors = vec![Vec::new(); movements];
-    for Along { trajectory, direction, speed, wanted, .. } in along(policy, rows) {
-        errors[trajectory].push((direction, speed - wanted));
-    }
+fn own_share(movements: &[Vec<Along>]) -> Option<f64> {
+    let row = |sample: &Along| (sample.direction.clone(), sample.speed - sample.wanted);
+    let errors: Vec<Vec<Row>> = movements.iter().map(|samples| samples.iter().map(row).collect()).collect();
     let all = errors.iter().flatten().map(|(_, error)| error * error).sum::<f64>();
     let left = |errors: &Vec<Row>| {
         let (odd, even) = quarters(errors);
@@ -87,11 +82,12 @@ fn left_by(rows: &[Row], others: &[Row]) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use motion::SampleIndex;
+    use motion::{Policy, SampleIndex};
     use nalgebra::{DVectorView, DVectorViewMut};
     use proptest::prelude::*;
 
     use super::*;
+    use crate::along::along_movements;
 
     /// π = 0.
     struct Nothing;
@@ -115,9 +111,9 @@ mod tests {
                 let indices = (0..240).map(|i| SampleIndex { trajectory: i / 20, sample: i % 20 }).collect();
                 gp::Rows::new(DMatrix::zeros(2, 240), DMatrix::from_fn(2, 240, at), indices).unwrap()
             };
-            let own = own_share(&Nothing, &rows(20)).unwrap();
+            let own = own_share(&along_movements(&Nothing, &rows(20))).unwrap();
             prop_assert!(own > 0.99, "{}", own);
-            let others = own_share(&Nothing, &rows(1)).unwrap();
+            let others = own_share(&along_movements(&Nothing, &rows(1))).unwrap();
             prop_assert!(others < OWN, "{}", others);
         }
     }

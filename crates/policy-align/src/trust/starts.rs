@@ -1,10 +1,10 @@
 //! Movements that begin slower than the policy: from rest.
 
 use gp::Rows;
-use motion::Policy;
-use prepare::numbers::percent;
+use motion::mean_and_error;
+use prepare::numbers::percent_of_all;
 
-use crate::along::{Along, along};
+use crate::along::Along;
 use crate::{Finding, Verdict};
 
 /// One in so many samples of a movement is its beginning.
@@ -32,58 +32,45 @@ impl Lack {
 
 /// Says that movements are slower than nᵀπ in their first tenth, but not afterwards: a hand or robot that accelerates from rest obeys no
 /// policy of the state alone.
-pub(crate) fn slow_starts(policy: &dyn Policy, rows: &Rows) -> Option<Finding> {
-    let (missing, t) = missing_at_starts(policy, rows)?;
+pub(crate) fn slow_starts(movements: &[Vec<Along>], rows: &Rows) -> Option<Finding> {
+    let (missing, t) = missing_at_starts(movements, rows)?;
     (missing > MISSING && t > LEAST_T).then(|| Finding {
         verdict: if missing > MUCH { Verdict::Doubtful } else { Verdict::Good },
         what: format!(
             "movements begin too slowly for the policy, by {} in their first tenth: from rest?",
-            percent(missing.min(1.0))
+            percent_of_all(missing)
         ),
         next: "begin to record when the hand has its speed, or cut the beginnings off".to_owned(),
     })
 }
 
 /// The mean over movements of what their beginning lacks beyond the rest, as a share of the speed, and its t.
-fn missing_at_starts(policy: &dyn Policy, rows: &Rows) -> Option<(f64, f64)> {
-    let movements = rows.indices().iter().map(|index| index.trajectory).max()? + 1;
-    let mut lasts = vec![0; movements];
+fn missing_at_starts(movements: &[Vec<Along>], rows: &Rows) -> Option<(f64, f64)> {
+    let mut lasts = vec![0; movements.len()];
     rows.indices().iter().for_each(|index| lasts[index.trajectory] = index.sample.max(lasts[index.trajectory]));
-    let mut lacks = vec![[Lack::default(); 2]; movements];
-    for Along { trajectory, sample, speed, wanted, .. } in along(policy, rows) {
-        let later = usize::from(sample * BEGINNING > lasts[trajectory]);
-        let lack = &mut lacks[trajectory][later];
-        lack.missing += (wanted - speed) * wanted;
-        lack.wanted += wanted * wanted;
-    }
-    let differences: Vec<f64> =
-        lacks.iter().filter_map(|[first, later]| Some(first.share()? - later.share()?)).collect();
-    let count = differences.len() as f64;
-    let mean = differences.iter().sum::<f64>() / count;
-    let variance = differences.iter().map(|own| (own - mean).powi(2)).sum::<f64>() / (count - 1.0);
-    (differences.len() >= FEW).then(|| (mean, mean / (variance / count).sqrt()))
+    let difference = |(samples, last): (&Vec<Along>, usize)| {
+        let mut lacks = [Lack::default(); 2];
+        for &Along { sample, speed, wanted, .. } in samples {
+            let lack = &mut lacks[usize::from(sample * BEGINNING > last)];
+            lack.missing += (wanted - speed) * wanted;
+            lack.wanted += wanted * wanted;
+        }
+        let [first, later] = lacks;
+        Some(first.share()? - later.share()?)
+    };
+    let differences: Vec<f64> = movements.iter().zip(lasts).filter_map(difference).collect();
+    let (mean, error) = mean_and_error(&differences);
+    (differences.len() >= FEW).then(|| (mean, mean / error))
 }
 
 #[cfg(test)]
 mod tests {
     use motion::SampleIndex;
-    use nalgebra::{DMatrix, DVector, DVectorView, DVectorViewMut};
+    use nalgebra::{DMatrix, DVector};
     use proptest::prelude::*;
 
     use super::*;
-
-    /// π(x) = −x.
-    struct Bowl;
-
-    impl Policy for Bowl {
-        fn dim(&self) -> usize {
-            2
-        }
-
-        fn action_into(&self, state: DVectorView<'_, f64>, mut action: DVectorViewMut<'_, f64>) {
-            action.copy_from(&-state);
-        }
-    }
+    use crate::along::{Bowl, along_movements};
 
     proptest! {
         /// Movements that accelerate from rest lack at their beginning what they lack; those at a constant share of the speed, with noise,
@@ -104,9 +91,10 @@ mod tests {
                 }
             }
             let rows = Rows::new(DMatrix::from_columns(&states), DMatrix::from_columns(&velocities), indices).unwrap();
-            let (missing, _) = missing_at_starts(&Bowl, &rows).unwrap();
+            let movements = along_movements(&Bowl, &rows);
+            let (missing, _) = missing_at_starts(&movements, &rows).unwrap();
             prop_assert!((missing - share * ramp).abs() < 0.02, "{missing}");
-            prop_assert_eq!(slow_starts(&Bowl, &rows).is_some(), missing > MISSING);
+            prop_assert_eq!(slow_starts(&movements, &rows).is_some(), missing > MISSING);
         }
     }
 }

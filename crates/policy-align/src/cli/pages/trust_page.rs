@@ -31,7 +31,7 @@ pub(crate) fn trust_page(model: &Model, name: &str, checksum: &str, prepared: &P
     let title = format!("How far to trust {name}");
     let learnt = html! {
         "Learnt by " (learner(model)) ", from " (counted(model.data.episodes, "episode")) " with "
-        (counted(model.data.samples, "sample")) (rows(model)) ". All checks work without the true policy. They cannot detect a \
+        (counted(model.data.samples, "sample")) (rows(model)) ". All checks work without the true policy. They may miss a \
          constraint that is the same in every demonstration."
     };
     let verdict = (model.trust.verdict, SENTENCES);

@@ -2,6 +2,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use policy_align::gp::Acting;
+use policy_align::kinematics::RobotModel;
 use policy_align::{
     ConstraintStretch, Finding, Model, Prepared, StateChannel, TaskLinks, constraint_file, joints_in_degrees,
 };
@@ -88,7 +89,8 @@ impl Constraints {
         let text = urdf(path)?;
         let remedy = "--link NAME; a URDF with joints named like the channels";
         let refused = |reason| Failure::usage(reason, displayed(path), remedy);
-        if let Some(Finding { what, next, .. }) = joints_in_degrees(&text, &model.state).map_err(refused)? {
+        let robot = RobotModel::from_urdf(&text).map_err(|error| refused(error.to_string()))?;
+        if let Some(Finding { what, next, .. }) = joints_in_degrees(&robot, &model.state) {
             session.warn(&format!("{what}: {next} for `fit`"));
         }
         TaskLinks::from_urdf(&text, &self.link, &model.channels()).map(Some).map_err(refused)

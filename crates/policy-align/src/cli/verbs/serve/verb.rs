@@ -18,7 +18,7 @@ use crate::cli::trust_files::load;
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Subscribes to joint states, finds the channels of the model among the joints by
-name, and publishes velocities, in rad/s or m/s. It commands zero, and prints why,
+name, and publishes velocities, in rad/s or m/s. It sends zero, and prints why,
 
   outside the data, like `predict`;
   while a joint is missing, not finite, or older than --stale;
