@@ -7,6 +7,7 @@ pub(crate) mod lbfgs;
 
 use std::ops::Range;
 
+use lanes::{LANES, Number, Register};
 use nalgebra::{DMatrix, DVector};
 use pulp::{Arch, Simd, WithSimd};
 
@@ -87,7 +88,9 @@ impl Task {
         // c K⁻¹ − AAᵀ: every derivative is half its inner product with that of K.
         factor.inverse_into(slack, triangle);
         *covariance = factor.into_matrix();
-        *slack *= columns;
+        if columns > 1.0 {
+            *slack *= columns;
+        }
         add_product_below(slack, -1.0, view(&weights), view(&weights).transpose());
         let slacks = Arch::new().dispatch(InnerProducts { matrix: slack, blocks: &self.blocks });
         let noise_slack: f64 = self.noise_weights.iter().enumerate().map(|(i, weight)| weight * slack[(i, i)]).sum();
@@ -105,6 +108,9 @@ impl Task {
     }
 }
 
+/// Blocks whose columns are read side by side.
+const ABREAST: usize = 4;
+
 /// Writes Σ a_b K_b into the lower triangle of `sum`: column by column, so that a column stays near while blocks pass by.
 struct WeightedSum<'a> {
     blocks: &'a [DMatrix<f64>],
@@ -116,15 +122,19 @@ impl WithSimd for WeightedSum<'_> {
     type Output = ();
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, _simd: S) {
+    fn with_simd<S: Simd>(self, simd: S) {
         let WeightedSum { blocks, amplitudes, sum } = self;
+        let (fours, rest) = blocks.as_chunks::<ABREAST>();
+        let (amplitudes, of_rest) = amplitudes.as_chunks::<ABREAST>();
         for i in 0..sum.ncols() {
             let below = below(sum, i);
             let column = &mut sum.as_mut_slice()[below.clone()];
             column.fill(0.0);
-            for (block, amplitude) in blocks.iter().zip(amplitudes) {
-                let terms = &block.as_slice()[below.clone()];
-                column.iter_mut().zip(terms).for_each(|(sum, term)| *sum += amplitude * term);
+            for (blocks, amplitudes) in fours.iter().zip(amplitudes) {
+                add(simd, column, blocks.each_ref().map(|block| &block.as_slice()[below.clone()]), *amplitudes);
+            }
+            for (block, amplitude) in rest.iter().zip(of_rest) {
+                add(simd, column, [&block.as_slice()[below.clone()]], [*amplitude]);
             }
         }
     }
@@ -140,15 +150,19 @@ impl WithSimd for InnerProducts<'_> {
     type Output = Vec<f64>;
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, _simd: S) -> Vec<f64> {
+    fn with_simd<S: Simd>(self, simd: S) -> Vec<f64> {
         let InnerProducts { matrix, blocks } = self;
         let mut products = vec![0.0; blocks.len()];
+        let (fours, rest) = blocks.as_chunks::<ABREAST>();
+        let (of_fours, of_rest) = products.as_chunks_mut::<ABREAST>();
         for i in 0..matrix.ncols() {
             let below = below(matrix, i);
             let a = &matrix.as_slice()[below.clone()];
-            for (product, block) in products.iter_mut().zip(blocks) {
-                let b = &block.as_slice()[below.clone()];
-                *product += 2.0 * dot(a, b) - a[0] * b[0];
+            for (products, blocks) in of_fours.iter_mut().zip(fours) {
+                add_products(simd, products, a, blocks.each_ref().map(|block| &block.as_slice()[below.clone()]));
+            }
+            for (product, block) in of_rest.iter_mut().zip(rest) {
+                add_products(simd, std::array::from_mut(product), a, [&block.as_slice()[below.clone()]]);
             }
         }
         products
@@ -162,15 +176,43 @@ fn below(matrix: &DMatrix<f64>, column: usize) -> Range<usize> {
     column * rows + column..(column + 1) * rows
 }
 
+/// Adds a_b k_b to a column, one block after the other.
 #[inline(always)]
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    let mut sums: lanes::Lanes = [0.0; lanes::LANES];
-    let (a_groups, a_rest) = a.as_chunks::<{ lanes::LANES }>();
-    let (b_groups, b_rest) = b.as_chunks::<{ lanes::LANES }>();
-    for (a, b) in a_groups.iter().zip(b_groups) {
-        for lane in 0..lanes::LANES {
-            sums[lane] += a[lane] * b[lane];
+fn add<S: Simd, const N: usize>(simd: S, column: &mut [f64], blocks: [&[f64]; N], amplitudes: [f64; N]) {
+    let (groups, rest) = column.as_chunks_mut::<LANES>();
+    let blocks = blocks.map(|block| block.as_chunks::<LANES>());
+    let registers = amplitudes.map(|amplitude| Register::splat(simd, amplitude));
+    for (at, group) in groups.iter_mut().enumerate() {
+        for part in 0..Register::<S>::parts() {
+            let mut sum = Register::load(simd, group, part);
+            for ((block, _), amplitude) in blocks.iter().zip(registers) {
+                sum += amplitude * Register::load(simd, &block[at], part);
+            }
+            sum.store(group, part);
         }
     }
-    lanes::total(sums) + a_rest.iter().zip(b_rest).map(|(a, b)| a * b).sum::<f64>()
+    for ((_, block), amplitude) in blocks.iter().zip(amplitudes) {
+        rest.iter_mut().zip(*block).for_each(|(sum, term)| *sum += amplitude * term);
+    }
+}
+
+/// Adds, for every block, twice the inner product of a column with its one, the diagonal once.
+#[inline(always)]
+fn add_products<S: Simd, const N: usize>(simd: S, products: &mut [f64; N], a: &[f64], blocks: [&[f64]; N]) {
+    let (a_groups, a_rest) = a.as_chunks::<LANES>();
+    let mut sums = [[0.0; LANES]; N];
+    for part in 0..Register::<S>::parts() {
+        let mut totals = [Register::splat(simd, 0.0); N];
+        for (at, group) in a_groups.iter().enumerate() {
+            let group = Register::load(simd, group, part);
+            for (total, block) in totals.iter_mut().zip(blocks) {
+                *total += group * Register::load(simd, &block.as_chunks::<LANES>().0[at], part);
+            }
+        }
+        totals.into_iter().zip(&mut sums).for_each(|(total, sums)| total.store(sums, part));
+    }
+    for ((product, b), sums) in products.iter_mut().zip(blocks).zip(sums) {
+        let rest: f64 = a_rest.iter().zip(b.as_chunks::<LANES>().1).map(|(a, b)| a * b).sum();
+        *product += 2.0 * (lanes::total(sums) + rest) - a[0] * b[0];
+    }
 }

@@ -76,7 +76,7 @@ impl Induced {
         // Of a group that alone says something nearly exactly, rounding leaves no prediction without itself.
         let mut levels = kappas().map(at).skip_while(Option::is_none).peekable();
         let least = levels.peek()?.as_ref()?.0;
-        let (best, compared) = climb(levels, |(_, left_out)| left_out)?;
+        let (best, compared) = climb(|_| levels.next().flatten(), |(_, left_out)| left_out)?;
         let known = with_kappa(best) == own && some.len() == count;
         let every = if some.len() == count { some } else { Groups::new(all) };
         let left_out = if known { compared } else { level(with_kappa(best), own, &every, conditions.spread)? };

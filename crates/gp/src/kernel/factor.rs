@@ -73,13 +73,18 @@ impl Factor {
     /// X = L⁻¹, zero above the diagonal.
     pub(crate) fn inverse_triangle(&self) -> DMatrix<f64> {
         let mut inverse = DMatrix::zeros(self.len(), self.len());
-        invert_lower_triangular(view_mut(&mut inverse), view(&self.lower), Par::Seq);
+        self.inverse_triangle_into(&mut inverse);
         inverse
+    }
+
+    /// Writes the lower triangle of X = L⁻¹.
+    pub(crate) fn inverse_triangle_into(&self, x: &mut DMatrix<f64>) {
+        invert_lower_triangular(view_mut(x), view(&self.lower), Par::Seq);
     }
 
     /// Writes the lower triangles of K⁻¹ and, on the way, of X = L⁻¹.
     pub(crate) fn inverse_into(&self, inverse: &mut DMatrix<f64>, x: &mut DMatrix<f64>) {
-        invert_lower_triangular(view_mut(x), view(&self.lower), Par::Seq);
+        self.inverse_triangle_into(x);
         matmul(
             view_mut(inverse),
             BlockStructure::TriangularLower,

@@ -1,5 +1,7 @@
 //! The noise factor κ, by held-out prediction: the marginal likelihood underestimates correlated noise.
 
+use std::mem;
+
 use nalgebra::DMatrix;
 
 use crate::kernel::covariance::{NOISE_FLOOR, add_noise};
@@ -47,45 +49,63 @@ pub(crate) fn raised(noise: f64, kappa: f64) -> f64 {
 impl Level {
     /// The model with noise κ(σ² + 1e-10), given Σ a_b K_b; none without Cholesky factor.
     pub(crate) fn at(covariance: &DMatrix<f64>, found: f64, kappa: f64, conditions: &Conditions<'_>) -> Option<Self> {
+        let mut inverse = DMatrix::zeros(covariance.nrows(), covariance.nrows());
+        Level::reusing((covariance.clone(), &mut inverse), found, kappa, conditions)
+    }
+
+    /// The same, given Σ a_b K_b, which becomes the factor, and a matrix of that size for L⁻¹ that is zero above the diagonal.
+    fn reusing(
+        (mut matrix, inverse): (DMatrix<f64>, &mut DMatrix<f64>),
+        found: f64,
+        kappa: f64,
+        conditions: &Conditions<'_>,
+    ) -> Option<Self> {
         let noise = raised(found, kappa);
-        let mut matrix = covariance.clone();
         add_noise(&mut matrix, noise, conditions.noise_weights.iter().copied());
         let factor = Factor::new(matrix)?;
         let mut weights = conditions.targets.clone();
         factor.solve(&mut weights);
         let &Conditions { groups, noise_weights, spread, .. } = conditions;
-        let left_out = left_out(&factor, &weights, groups, noise_weights, spread)?;
+        factor.inverse_triangle_into(inverse);
+        let left_out = left_out(inverse, &weights, groups, noise_weights, spread)?;
         Some(Level { kappa, found, noise, factor, weights, left_out })
     }
 
     /// The best κ, given Σ a_b K_b and σ² found.
     pub(crate) fn best(covariance: &DMatrix<f64>, found: f64, conditions: &Conditions<'_>) -> Option<Self> {
-        climb(kappas().map(|kappa| Level::at(covariance, found, kappa, conditions)), |level| &level.left_out)
+        let mut inverse = DMatrix::zeros(covariance.nrows(), covariance.nrows());
+        let mut kappas = kappas();
+        let next = |worse: Option<Level>| {
+            let matrix = match worse.map(|level| level.factor.into_matrix()) {
+                // Many rows take less time to copy than to allocate.
+                Some(mut matrix) => {
+                    matrix.copy_from(covariance);
+                    matrix
+                }
+                None => covariance.clone(),
+            };
+            Level::reusing((matrix, &mut inverse), found, kappas.next()?, conditions)
+        };
+        climb(next, |level| &level.left_out)
     }
 }
 
 /// The best of levels of rising noise by R², given up after two in a row that are not better, at one that is none, or where there
-/// is nothing to gain. None if already the first is none.
+/// is nothing to gain. None if already the first is none. `next` gets the worse of two levels for its memory.
 pub(crate) fn climb<T>(
-    mut levels: impl Iterator<Item = Option<T>>,
+    mut next: impl FnMut(Option<T>) -> Option<T>,
     left_out: impl Fn(&T) -> &LeftOutPredictions,
 ) -> Option<T> {
-    let mut best = levels.next()??;
+    let mut best = next(None)?;
     if left_out(&best).is_exact() {
         return Some(best);
     }
-    let mut worse = 0;
-    for next in levels {
-        let Some(next) = next else { break };
-        if left_out(&next).r_squared > left_out(&best).r_squared {
-            best = next;
-            worse = 0;
-        } else {
-            worse += 1;
-            if worse == 2 {
-                break;
-            }
-        }
+    let (mut worse, mut in_a_row) = (None, 0);
+    while in_a_row < 2 {
+        let Some(level) = next(worse.take()) else { break };
+        let better = left_out(&level).r_squared > left_out(&best).r_squared;
+        worse = Some(if better { mem::replace(&mut best, level) } else { level });
+        in_a_row = if better { 0 } else { in_a_row + 1 };
     }
     Some(best)
 }

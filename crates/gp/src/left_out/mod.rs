@@ -84,19 +84,18 @@ pub(crate) fn is_nearly_exact(r_squared: f64) -> bool {
     1.0 - r_squared <= NEARLY_EXACT
 }
 
-/// Of every group of rows T: V_T = ((K⁻¹)_TT)⁻¹ and e_T = V_T α_T, (K⁻¹)_TT = X_Tᵀ X_T with X = L⁻¹. None if a
-/// block cannot be inverted.
+/// Of every group of rows T: V_T = ((K⁻¹)_TT)⁻¹ and e_T = V_T α_T, (K⁻¹)_TT = X_Tᵀ X_T with X = L⁻¹, (M, M), zero above the
+/// diagonal. None if a block cannot be inverted.
 ///
 /// `spread` is Σ w|y|² about whatever is predicted without a model.
 pub(crate) fn left_out(
-    factor: &Factor,
+    x: &DMatrix<f64>,
     weights: &DMatrix<f64>,
     groups: &[Vec<usize>],
     noise_weights: &[f64],
     spread: f64,
 ) -> Option<LeftOutPredictions> {
-    let x = factor.inverse_triangle();
-    let blocks: Vec<_> = groups.par_iter().map(|rows| block(&x, weights, rows)).collect();
+    let blocks: Vec<_> = groups.par_iter().map(|rows| block(x, weights, rows)).collect();
     let mut residuals = DMatrix::zeros(weights.nrows(), weights.ncols());
     let mut variances = vec![0.0; weights.nrows()];
     for (rows, block) in groups.iter().zip(blocks) {
