@@ -92,7 +92,7 @@ pub use choice::Choice;
 pub use context::ContextError;
 pub use error::FitError;
 pub use evaluate::{EvaluateError, Evaluation, Truth, evaluate};
-pub use export::{CSource, ExportError, Precision, to_lerobot, to_onnx};
+pub use export::{CSource, ExportError, Precision, single_precision_error, to_lerobot, to_onnx};
 pub use fit::{Digest, FitOptions, LearnerChoice, Progress, Step, fit, fit_with};
 pub use large::{DigestError, Digester, Division, FurtherPiece, Part, PartError, Unfinished};
 pub use learnt::Learnt;

@@ -1,11 +1,9 @@
 //! Descriptions of a model.
 
-use std::path::Path;
-
 use gp::Hypothesis;
 use policy_align::{Learnt, Model, Verdict};
-use text::quoted;
 
+use crate::cli::given::value_word;
 use crate::cli::lines::{counted, short};
 
 /// Its verdict.
@@ -21,7 +19,7 @@ pub(crate) fn verdict(model: &Model) -> &'static str {
 pub(crate) fn context_flag(model: &Model) -> String {
     let values = model.context.iter().map(|channel| format!("{}={}", channel.name, short(channel.median)));
     let values: Vec<String> = values.collect();
-    if values.is_empty() { String::new() } else { format!(" --context {}", quoted(Path::new(&values.join(",")))) }
+    if values.is_empty() { String::new() } else { format!(" --context {}", value_word(&values.join(","))) }
 }
 
 /// What learnt it.

@@ -7,9 +7,9 @@ use motion::{Finding, Recordings};
 use policy_align::{
     ConstraintStretch, ContextUse, FileSummary, Model, Prepared, TaskLinks, estimate_constraints, prepare,
 };
-use text::quoted;
 
 use crate::cli::failure::{Exit, Failure, displayed};
+use crate::cli::given::value_word;
 use crate::cli::lines::counted;
 use crate::cli::options::config::Config;
 use crate::cli::options::flags::{PrepareFlags, ReadFlags};
@@ -72,7 +72,7 @@ pub(crate) fn prepared_for(
     let expected = model.channels();
     if found != expected {
         let what = format!("the channels are {}, the model's {}", found.join(", "), expected.join(", "));
-        let remedy = format!("--state {}", quoted(Path::new(&expected.join(","))));
+        let remedy = format!("--state {}", value_word(&expected.join(",")));
         return Err(Failure::usage(what, named(files), remedy));
     }
     Ok((reading, prepared))

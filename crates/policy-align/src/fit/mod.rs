@@ -100,7 +100,8 @@ pub fn fit_with(
     decisions.extend(links.decision(&readings));
     decisions.extend(digests_decision(prepared, digests, &readings));
     decisions.push(learner_decision(options, &readings));
-    decisions.extend(rows_decision(&readings));
+    // Of the Gaussian processes; the aligned potentials learn from all samples.
+    decisions.extend(rows_decision(&readings).filter(|_| options.learner != LearnerChoice::PolicyAlign));
     let aligned = match options.learner {
         LearnerChoice::PolicyAlign => {
             let reference = readings.actions(rows.states().as_view());

@@ -33,7 +33,7 @@ pub(crate) fn common_surface(rows: &Rows, state: &[StateChannel], numbers: &Trus
     Some(Finding {
         verdict: Verdict::Doubtful,
         what: format!("no movement crosses {surface} (coverage {})", percent(coverage.max(f64::EPSILON))),
-        next: "record movements that cross it: a constraint common to all may hide the policy there".to_owned(),
+        next: "record movements that go across: a constraint common to all may hide the policy there".to_owned(),
     })
 }
 

@@ -1,4 +1,4 @@
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
 use nalgebra::DVector;
@@ -150,6 +150,6 @@ fn dims(names: &[String], model: &Model) -> Result<[usize; 2], Failure> {
             (Some(x), Some(y)) if x != y => Ok([x, y]),
             _ => refused(&format!("'{x},{y}' are not two channels"), format!("two of {}", known.join(", "))),
         },
-        _ => refused("a plot has two channels", format!("--dims {}", quoted(Path::new(&known[..2].join(","))))),
+        _ => refused("a plot has two channels", format!("--dims {}", value_word(&known[..2].join(",")))),
     }
 }
