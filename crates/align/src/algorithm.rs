@@ -2,7 +2,7 @@ use motion::Demonstrations;
 use nalgebra::DVector;
 use serde::{Deserialize, Serialize};
 
-use crate::checks::check;
+use crate::checks::{check, one_context};
 use crate::offsets::bipartition::{Partition, bipartition};
 use crate::offsets::group_offsets::group_offsets;
 use crate::offsets::responsibilities::{Responsibilities, squared_radius};
@@ -80,6 +80,7 @@ impl PolicyAlign {
             self.check()?;
             let potentials = self.integration.potentials(demonstrations)?;
             check_span(demonstrations)?;
+            one_context(demonstrations)?;
             let levels = match self.few_neighbours(sparse, demonstrations)? {
                 Some((tree, sigma_squared)) => self.level_sparse(tree, &potentials, sigma_squared)?,
                 None => self.level(&SearchSpace::new(demonstrations), &potentials)?,

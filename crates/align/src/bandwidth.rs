@@ -108,12 +108,12 @@ fn narrow(distances: &DMatrix<f64>) -> f64 {
         let others = column.iter().enumerate().filter(|&(j, _)| j != k);
         others.map(|(_, &distance)| distance).fold(f64::INFINITY, f64::min)
     });
-    median(nearest.collect())
+    median(nearest)
 }
 
 /// Each pair counts once: d is symmetric, and the median of a list and of its doubled self are the same.
 fn wide(distances: &DMatrix<f64>) -> f64 {
-    median(pairs(distances).map(|(_, _, distance)| distance).collect())
+    median(pairs(distances).map(|(_, _, distance)| distance))
 }
 
 fn touching(distances: &DMatrix<f64>) -> Vec<(usize, usize)> {
@@ -126,14 +126,7 @@ fn pairs(distances: &DMatrix<f64>) -> impl Iterator<Item = (usize, usize, f64)> 
     (0..count).flat_map(move |k| (k + 1..count).map(move |j| (k, j, distances[(j, k)])))
 }
 
-/// The middle value, or the mean of the middle two; infinite values do not count.
-fn median(mut values: Vec<f64>) -> f64 {
-    values.retain(|value| value.is_finite());
-    if values.is_empty() {
-        return f64::INFINITY;
-    }
-    let half = values.len() / 2;
-    let even = values.len().is_multiple_of(2);
-    let (below, &mut upper, _) = values.select_nth_unstable_by(half, f64::total_cmp);
-    if even { 0.5 * below.iter().copied().fold(f64::NEG_INFINITY, f64::max) + 0.5 * upper } else { upper }
+/// The median of the finite values; infinite if there are none.
+fn median(values: impl IntoIterator<Item = f64>) -> f64 {
+    motion::median(values.into_iter().filter(|value| value.is_finite()).collect()).unwrap_or(f64::INFINITY)
 }

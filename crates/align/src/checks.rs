@@ -3,7 +3,14 @@
 use motion::anomalies::{duplicates, long_steps, mirror_images, stands_still};
 use motion::{Demonstrations, Trajectory};
 
-use crate::Warning;
+use crate::{AlignError, Warning};
+
+/// Refuses movements of different contexts.
+pub(crate) fn one_context(demonstrations: &Demonstrations) -> Result<(), AlignError> {
+    let trajectories = demonstrations.trajectories();
+    let other = trajectories.iter().position(|movement| movement.context() != trajectories[0].context());
+    other.map_or(Ok(()), |trajectory| Err(AlignError::Context { trajectory }))
+}
 
 /// Anomalies of the demonstrations, trajectory by trajectory.
 pub(crate) fn check(demonstrations: &Demonstrations) -> Vec<Warning> {

@@ -102,8 +102,19 @@ pub enum AlignError {
         /// How many dimensions there are.
         expected: usize,
     },
+    /// Movements depended on something besides the state, which no potential of the state tells apart.
+    #[error(
+        "trajectory {trajectory} has another context (goal, object) than the first; align movements of one context each, or fit \
+         the slope GP, which learns policies of a context"
+    )]
+    Context {
+        /// The first trajectory whose context differs.
+        trajectory: usize,
+    },
     /// A stored policy has an unknown format version.
-    #[error("the stored policy has version {found}, this program reads up to {known}; use a newer one")]
+    #[error(
+        "the stored policy has version {found}, this program reads 1 to {known}; use the program that stored it, or a newer one"
+    )]
     PolicyVersion {
         /// Its version.
         found: u32,

@@ -56,6 +56,7 @@
 //! - **Noisy positions** bias the integrated potential. Record velocities, or smooth the positions first (crate
 //!   `smoothing`).
 //! - **Many groups**: [`Aligned::discarded`] is long; use a wider [`Bandwidth`] or record more.
+//! - **A context** (goal, object) that differs between movements: the slope GP learns policies of one.
 //! - [`AlignError`]: parameters out of range, missing velocities, an undefined bandwidth, overflow, or too little
 //!   memory.
 //!

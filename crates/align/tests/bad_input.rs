@@ -44,12 +44,18 @@ fn what_is_refused() {
     };
     let steep = || Demonstrations::from_states([line([0.0, 0.0], [1e5, 0.0], 4)], 1e-300).unwrap();
     let single = || observed(vec![line([0.0, 0.0], [1.0, 1.0], 5)]);
+    let goals = || {
+        let goal = |k: usize| DVector::from_element(1, if k < 2 { 0.5 } else { 0.75 });
+        let movement = |(k, x)| Trajectory::new(x, 0.1).unwrap().with_context(goal(k)).unwrap();
+        Demonstrations::new(sound().into_iter().enumerate().map(movement).collect()).unwrap()
+    };
     let duplicates = |pairs, usable| AlignError::ZeroBandwidth { pairs, usable };
     let parameter = |name, value, requirement| AlignError::Parameter { name, value, requirement };
     let sigma = "bandwidth Fixed(sigma_squared)";
     let positive = "be positive and finite";
 
     let cases: Vec<(&str, PolicyAlign, Demonstrations, AlignError)> = vec![
+        ("two goals", with(|_| {}), goals(), AlignError::Context { trajectory: 2 }),
         ("one trajectory, narrow", with(|_| {}), single(), AlignError::SingleTrajectory),
         ("one trajectory, medium", with(|p| p.bandwidth = Bandwidth::Medium), single(), AlignError::SingleTrajectory),
         ("one trajectory, wide", with(|p| p.bandwidth = Bandwidth::Wide), single(), AlignError::SingleTrajectory),

@@ -26,7 +26,8 @@ impl NullSpaceProjector {
 
     /// N of the matrix A (k, n), where `tolerance` decides what is rounding. It is relative, and is used twice:
     /// a row whose largest entry is at most `tolerance` times that of the whole matrix is no constraint; and, all rows
-    /// scaled to length 1, a row whose distance to the span of the others is at most `tolerance` adds none.
+    /// scaled to length 1, rows are taken one by one, the farthest from the span of those before first, and one whose
+    /// distance to that span is at most `tolerance` adds none.
     /// So neither c·A nor rows in other units change N.
     ///
     /// # Errors

@@ -152,7 +152,7 @@ pub enum DemoGenError {
         trajectory: usize,
     },
     /// The task of a constraint A u = b cannot be drawn.
-    #[error("task {largest}: it must be a finite number, 0 or more (above 0 for a rate)")]
+    #[error("task {largest}: it must be a finite number, 0 or more")]
     Task {
         /// The largest task given.
         largest: f64,
@@ -179,11 +179,25 @@ pub enum DemoGenError {
         /// What is wrong with it.
         source: Box<DemoGenError>,
     },
-    /// The range of start states is not an angle from 0 up.
-    #[error("start range {range}: it must be a finite angle, 0 or more, in radians")]
+    /// The range of start states is not a number from 0 up.
+    #[error("start range {range}: it must be a finite number, 0 or more, in the unit of the state")]
     StartRange {
         /// The range given.
         range: f64,
+    },
+    /// A standard deviation is not a number from 0 up.
+    #[error("{name} {value}: it must be a finite number, 0 or more, in radians")]
+    Deviation {
+        /// Of what.
+        name: &'static str,
+        /// The deviation given.
+        value: f64,
+    },
+    /// A rate is not a number above 0.
+    #[error("task rate {rate}: it must be a finite number above 0, in 1/s")]
+    TaskRate {
+        /// The rate given.
+        rate: f64,
     },
     /// The variance of start states is not a number from 0 up.
     #[error("start variance {variance}: it must be a finite number, 0 or more, in units of the coordinates squared")]

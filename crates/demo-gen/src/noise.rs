@@ -1,4 +1,4 @@
-use motion::{MotionError, Trajectory};
+use motion::MotionError;
 use nalgebra::{DMatrix, DVector};
 use rand::{Rng, RngExt};
 use rand_distr::StandardNormal;
@@ -29,7 +29,7 @@ pub fn with_position_noise<R: Rng + ?Sized>(
         let noise = DMatrix::from_fn(states.nrows(), states.ncols(), |dimension, _| {
             deviation[dimension] * rng.sample::<f64, _>(StandardNormal)
         });
-        let mut observed = Trajectory::new(states + noise, recording.observed.time_step())?;
+        let mut observed = recording.observed.with_states(states + noise)?;
         if let Some(velocities) = recording.observed.velocities() {
             observed = observed.with_velocities(velocities.clone())?;
         }

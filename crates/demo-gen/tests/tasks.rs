@@ -174,8 +174,11 @@ fn bad_input() {
         wiping.record(&mut generator(1)).unwrap_err()
     };
     assert_eq!(tilted(|arm| arm.largest_tilt = 2.0), DemoGenError::Tilt { largest: 2.0 });
-    assert_eq!(tilted(|arm| arm.off_surface = -1.0), DemoGenError::StartVariance { variance: -1.0 });
-    assert_eq!(tilted(|arm| arm.task_rate = 0.0), DemoGenError::Task { largest: 0.0 });
+    assert_eq!(
+        tilted(|arm| arm.off_surface = -1.0),
+        DemoGenError::Deviation { name: "deviation off the surface", value: -1.0 }
+    );
+    assert_eq!(tilted(|arm| arm.task_rate = 0.0), DemoGenError::TaskRate { rate: 0.0 });
     let three = include_str!("../../../robots/planar_three_link.urdf");
     assert!(matches!(Wiping::new(three, Contact::Flat), Err(DemoGenError::Joints { found: 3, expected: 7 })));
     let recordings = CyclesWithTask { n_trajectories: 1, ..good() }.record(&mut generator(1)).unwrap();

@@ -2,6 +2,9 @@ use nalgebra::{Cholesky, DMatrix, DMatrixView, DVector, DVectorView, DVectorView
 
 use crate::KinematicsError;
 
+/// A pivot of J Jᵀ + λ² I below this share of its diagonal entry is rounding.
+const SINGULAR: f64 = 1e-13;
+
 /// Damped resolved-rate control: joint velocities that realise a task velocity, and follow a second wish as far as the
 /// task leaves them free.
 ///
@@ -16,8 +19,9 @@ pub struct ResolvedRate {
 }
 
 impl ResolvedRate {
-    /// Control with damping λ, in the Jacobian's unit (metres per radian): what the task may at most cost near a
-    /// singular posture, where the undamped joint velocity grows without bound. 0 is no damping.
+    /// Control with damping λ, in the Jacobian's unit (metres per radian). The task's part of the joint velocity is at most
+    /// |v − J z| / (2λ), and where J is small beside λ the task is met less exactly. 0 is no damping: near a singular posture the
+    /// joint velocity then grows without bound.
     ///
     /// # Errors
     /// [`KinematicsError::Damping`].
@@ -77,6 +81,14 @@ impl ResolvedRate {
             self.residual = DVector::zeros(0);
             return Err(KinematicsError::SingularTask { damping: self.damping });
         };
+        // Rounding may leave a singular matrix a pivot, but none that is more than a small share of its diagonal.
+        let lower = cholesky.l_dirty();
+        let left =
+            |row: usize| lower[(row, row)].powi(2) > SINGULAR * lower.view((row, 0), (1, row + 1)).norm_squared();
+        if !(0..lower.nrows()).all(left) {
+            self.gram = cholesky.unpack_dirty();
+            return Err(KinematicsError::SingularTask { damping: self.damping });
+        }
         cholesky.solve_mut(&mut self.residual);
         self.gram = cholesky.unpack_dirty();
         Ok(())

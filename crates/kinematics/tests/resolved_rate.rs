@@ -66,6 +66,11 @@ fn bad_input_is_refused() {
     let flat = DMatrix::from_fn(3, 5, |_, k| k as f64);
     assert_eq!(step(0.0, &flat, &v, &z), Err(KinematicsError::SingularTask { damping: 0.0 }));
     assert!(step(0.1, &flat, &v, &z).is_ok());
+    // Rounding leaves this one a pivot.
+    let rounded = DMatrix::from_row_slice(2, 3, &[0.1, 0.2, 0.3, 0.5, 1.0, 1.5]);
+    let (task, rest) = (DVector::from_vec(vec![1.0, 0.0]), DVector::zeros(3));
+    assert_eq!(step(0.0, &rounded, &task, &rest), Err(KinematicsError::SingularTask { damping: 0.0 }));
+    assert!(step(1e-3, &rounded, &task, &rest).is_ok());
     let broken = j.map(|value| if value == 1.0 { f64::NAN } else { value });
     assert_eq!(step(0.1, &broken, &v, &z), Err(KinematicsError::SingularTask { damping: 0.1 }));
 

@@ -3,7 +3,7 @@
 //! Reduction by multiples of π/2 in four parts (Cody and Waite), then the minimax polynomials of FDLIBM on
 //! [−π/4, π/4]. There is no branch and no table, so that a compiler turns the loop over lanes into vector code; and no
 //! fused multiply-add, so that every machine gets the same bits. Beyond [`FAR`] the parts of π/2 no longer multiply
-//! exactly and the library function takes over.
+//! exactly and the function of the platform takes over, whose bits may differ.
 
 use crate::Lanes;
 

@@ -5,7 +5,7 @@
 mod support;
 
 use lwpr::{LwprError, LwprParams, Side, StandardisedModel, Training};
-use nalgebra::{DMatrix, DVector, dvector};
+use nalgebra::{DMatrix, DVector, dmatrix, dvector};
 use proptest::prelude::*;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -92,11 +92,28 @@ proptest! {
 
 #[test]
 fn equal_outputs_have_spread_one() {
-    let (xs, ys) = (DMatrix::from_fn(2, 64, |i, j| (j * (i + 2)) as f64 * 0.1), DMatrix::repeat(1, 64, 7.0));
-    let model = Training::default().fit(xs.as_view(), ys.as_view(), &mut ChaCha8Rng::seed_from_u64(1)).unwrap();
-    assert_eq!(model.model().params().norm_out, Some(dvector![1.0]));
-    assert!((model.value(xs.column(3), 0) - 7.0).abs() < 1e-12);
-    assert_eq!(model.value(dvector![1e6, 1e6].as_view(), 0), model.mean()[0]);
+    // The mean of 64 times .1 is not .1.
+    for output in [7.0, 0.1, -1e30] {
+        let (xs, ys) = (DMatrix::from_fn(2, 64, |i, j| (j * (i + 2)) as f64 * 0.1), DMatrix::repeat(1, 64, output));
+        let model = Training::default().fit(xs.as_view(), ys.as_view(), &mut ChaCha8Rng::seed_from_u64(1)).unwrap();
+        assert_eq!(model.model().params().norm_out, Some(dvector![1.0]));
+        assert!((model.value(xs.column(3), 0) / output - 1.0).abs() < 1e-12);
+        assert_eq!(model.value(dvector![1e6, 1e6].as_view(), 0), model.mean()[0]);
+    }
+}
+
+#[test]
+fn a_bad_output_is_named_where_it_stands() {
+    let (xs, mut ys) = (DMatrix::from_fn(1, 3, |_, j| j as f64), dmatrix![1.0, 2.0, 3.0]);
+    for value in [f64::NAN, f64::INFINITY] {
+        ys[(0, 1)] = value;
+        let refused =
+            Training::default().fit(xs.as_view(), ys.as_view(), &mut ChaCha8Rng::seed_from_u64(1)).map(|_| ());
+        assert!(
+            matches!(refused, Err(LwprError::BadValue { side: Side::Output, sample: 1, dimension: 0, .. })),
+            "{refused:?}"
+        );
+    }
 }
 
 #[test]

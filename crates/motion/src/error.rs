@@ -30,7 +30,7 @@ pub enum MotionError {
         "{series}, sample {sample}, dimension {dimension}: {value} is not a finite number; drop or interpolate the sample"
     )]
     NotFinite {
-        /// States or velocities.
+        /// Which numbers.
         series: Series,
         /// Column of the value.
         sample: usize,

@@ -1,3 +1,6 @@
+/// By how much equal values and their mean may differ, as a share of the mean.
+const ROUNDING: f64 = 1e-13;
+
 /// The mean of values, and its standard error sd/√K, sd with K − 1: not finite of fewer than two values. O(K).
 pub fn mean_and_error(values: &[f64]) -> (f64, f64) {
     let count = values.len() as f64;
@@ -6,11 +9,31 @@ pub fn mean_and_error(values: &[f64]) -> (f64, f64) {
     (mean, (variance / count).sqrt())
 }
 
+/// Standard deviation about the mean, divided by N; 0 where values differ by rounding alone. Neither sums nor squares of finite
+/// values overflow.
+pub fn standard_deviation(values: impl Iterator<Item = f64> + Clone) -> f64 {
+    let count = values.clone().count() as f64;
+    let mean: f64 = values.clone().map(|value| value / count).sum();
+    let largest = values.clone().fold(0.0_f64, |largest, value| largest.max((value - mean).abs()));
+    if largest <= ROUNDING * mean.abs() {
+        return 0.0;
+    }
+    largest * values.map(|value| ((value - mean) / largest).powi(2) / count).sum::<f64>().sqrt()
+}
+
 #[cfg(test)]
 mod tests {
     use proptest::prelude::*;
 
     use super::*;
+
+    #[test]
+    fn equal_values_do_not_vary() {
+        // Their mean is not .1.
+        assert_eq!(standard_deviation(std::iter::repeat_n(0.1, 400)), 0.0);
+        assert!((standard_deviation([1.0, 3.0].into_iter()) - 1.0).abs() < 1e-15);
+        assert!((standard_deviation([-1e300, 1e300].into_iter()) / 1e300 - 1.0).abs() < 1e-15);
+    }
 
     #[test]
     fn of_three_values() {

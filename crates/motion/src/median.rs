@@ -4,6 +4,16 @@ pub fn upper_median(mut values: Vec<f64>) -> Option<f64> {
     (!values.is_empty()).then(|| *values.select_nth_unstable_by(middle, f64::total_cmp).1)
 }
 
+/// The middle value, or the mean of the middle two; none of no values. O(N).
+pub fn median(mut values: Vec<f64>) -> Option<f64> {
+    let (middle, even) = (values.len() / 2, values.len().is_multiple_of(2));
+    if values.is_empty() {
+        return None;
+    }
+    let (below, &mut upper, _) = values.select_nth_unstable_by(middle, f64::total_cmp);
+    Some(if even { 0.5 * below.iter().copied().fold(f64::NEG_INFINITY, f64::max) + 0.5 * upper } else { upper })
+}
+
 #[cfg(test)]
 mod tests {
     use proptest::prelude::*;

@@ -140,7 +140,8 @@ impl Episode {
     #[must_use]
     pub fn part(&self, from: usize, to: usize) -> Episode {
         let at = |sample: usize| self.row(sample).map(|(_, row)| row);
-        let rows = self.source.rows.and_then(|rows| Some(Rows { first: at(from)?, last: at(to.max(1) - 1)?, ..rows }));
+        let whole = self.source.rows.filter(|_| from < to);
+        let rows = whole.and_then(|rows| Some(Rows { first: at(from)?, last: at(to - 1)?, ..rows }));
         let source = Source { file: self.source.file.clone(), rows };
         let constraint = self.constraint.as_ref().and_then(|labels| labels.chosen(from..to));
         let part = self.with(self.times.part(from..to), source, |values| values.columns(from, to - from).into_owned());
@@ -189,7 +190,8 @@ impl Episode {
     /// The row of a sample and what it is called, where rows are consecutive.
     fn row(&self, sample: usize) -> Option<(&'static str, u64)> {
         let rows = self.source.rows?;
-        (rows.last - rows.first + 1 == self.n_samples() as u64).then(|| (rows.word, rows.first + sample as u64))
+        (rows.last.checked_sub(rows.first)? + 1 == self.n_samples() as u64)
+            .then(|| (rows.word, rows.first + sample as u64))
     }
 }
 

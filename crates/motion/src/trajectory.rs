@@ -45,9 +45,14 @@ impl Trajectory {
     /// # Errors
     /// As [`Trajectory::new`] and [`Trajectory::with_times`].
     pub fn stamped(times: Vec<f64>, states: DMatrix<f64>) -> Result<Self, MotionError> {
-        let first = times.get(1).map_or(1.0, |second| second - times[0]);
+        // Of two stamps far from 0 the step has lost digits.
+        let step = match times[..] {
+            [first, second, .., last] if !are_even(&times, second - first) => (last - first) / (times.len() - 1) as f64,
+            [first, second, ..] => second - first,
+            _ => 1.0,
+        };
         // A step that is none belongs to stamps that do not ascend.
-        let step = if first.is_finite() && first > 0.0 { first } else { 1.0 };
+        let step = if step.is_finite() && step > 0.0 { step } else { 1.0 };
         Trajectory::new(states, step)?.with_times(times)
     }
 
@@ -83,6 +88,9 @@ impl Trajectory {
     ///
     /// # Errors
     /// [`MotionError::NotFinite`] if a product is not.
+    ///
+    /// # Panics
+    /// If there is not one factor for each dimension.
     pub fn scaled(&self, factors: &DVector<f64>) -> Result<Self, MotionError> {
         let anew = self.with_states(scaled(&self.states, factors))?;
         match &self.velocities {
@@ -118,14 +126,8 @@ impl Trajectory {
         if let Some(sample) = (0..times.len()).find(|&sample| !in_order(sample)) {
             return Err(MotionError::StampOrder { sample, time: times[sample] });
         }
-        let rounding = 4.0 * f64::EPSILON * times[0].abs().max(times[times.len() - 1].abs());
         let step = self.time_step();
-        let even = |(sample, time): (usize, &f64)| (time - times[0] - step * sample as f64).abs() <= rounding;
-        let times = if times.iter().enumerate().all(even) {
-            Times::Even { step, len: times.len() }
-        } else {
-            Times::Stamped(times)
-        };
+        let times = if are_even(&times, step) { Times::Even { step, len: times.len() } } else { Times::Stamped(times) };
         Ok(Trajectory { times: Arc::new(times), ..self })
     }
 
@@ -202,6 +204,12 @@ impl Trajectory {
     pub fn n_samples(&self) -> usize {
         self.states.ncols()
     }
+}
+
+/// Whether stamps are a step apart, to their rounding.
+fn are_even(times: &[f64], step: f64) -> bool {
+    let rounding = 4.0 * f64::EPSILON * times[0].abs().max(times[times.len() - 1].abs());
+    times.iter().enumerate().all(|(sample, time)| (time - times[0] - step * sample as f64).abs() <= rounding)
 }
 
 fn require_finite(values: &DMatrix<f64>, series: Series) -> Result<(), MotionError> {

@@ -25,6 +25,16 @@ proptest! {
         prop_assert_eq!(stamped.seconds(0, 1), time_step);
     }
 
+    /// Stamps far from 0 are still even, although the step between the first two has lost digits.
+    #[test]
+    fn even_stamps_are_recognised(count in 2usize..2000, milliseconds in 1u32..1000, from in -1e5..1e5f64) {
+        let step = f64::from(milliseconds) / 1000.0;
+        let times = (0..count).map(|i| from + step * i as f64).collect();
+        let stamped = Trajectory::stamped(times, DMatrix::from_fn(1, count, |_, i| i as f64)).unwrap();
+        prop_assert_eq!(stamped.times(), None);
+        prop_assert!((stamped.time_step() / step - 1.0).abs() < 1e-6);
+    }
+
     #[test]
     fn every_step_has_its_own_time(
         (states, gaps) in (3usize..40).prop_flat_map(|n| (

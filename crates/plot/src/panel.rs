@@ -16,7 +16,8 @@ pub struct Sketch {
     pub(crate) rasters: Vec<Raster>,
 }
 
-/// A scalar field on a grid: `values[row][column]` at (`x[column]`, `y[row]`).
+/// A scalar field on a grid: `values[row][column]` at (`x[column]`, `y[row]`). Panels need at least two columns and two rows of equal
+/// length, and panic otherwise.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 pub struct Field {
     /// Places of the columns.

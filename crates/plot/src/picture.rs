@@ -36,7 +36,7 @@ impl Picture {
         Picture(sheet)
     }
 
-    /// As scalable vector graphics; bodies in space are pixels within. On white paper, or, where the reader prefers it, on
+    /// As scalable vector graphics; bodies in space and fields in colours are pixels within. On white paper, or, where the reader prefers it, on
     /// dark.
     pub fn svg(&self) -> String {
         let mut svg = with_style_sheet(&decimals::shortened(&SvgBackend::new().render_scene(&self.0.scene)));

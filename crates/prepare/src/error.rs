@@ -52,7 +52,7 @@ pub enum PrepareError {
     },
     /// A window that cannot smooth.
     #[error(
-        "--smooth: a window of {window} samples, {step} s apart; an odd number of at least 5, as in --smooth 9, or seconds, as in --smooth {}s", crate::numbers::short(9.0 * step)
+        "--smooth: a window of {window} samples, {step} s apart, is not possible: give an odd number of at least 5, as in --smooth 9, or seconds, as in --smooth {}s", crate::numbers::short(9.0 * step)
     )]
     Smoothing {
         /// Samples in it.
@@ -68,9 +68,6 @@ pub enum PrepareError {
         /// Why it cannot be one, and what can.
         why: String,
     },
-    /// Nothing moves.
-    #[error("no channel changes in any episode; recordings that move")]
-    NoMotion,
     /// An episode is not a movement.
     #[error("episode '{episode}': {source}")]
     Episode {

@@ -52,7 +52,7 @@ pub enum VelocityUse {
     /// They are used if they agree with the steps.
     #[default]
     Auto,
-    /// They are used.
+    /// They are used where every episode has them; otherwise a finding says that they are not.
     Recorded,
     /// They are ignored.
     Ignored,

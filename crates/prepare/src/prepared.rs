@@ -57,6 +57,9 @@ impl Prepared {
     ///
     /// # Errors
     /// [`MotionError`] where a product is not finite.
+    ///
+    /// # Panics
+    /// If there is not one factor for each channel.
     pub fn rescaled(&self, factors: &DVector<f64>) -> Result<Self, MotionError> {
         let movements = self.demonstrations.trajectories().iter().map(|movement| movement.scaled(factors));
         let demonstrations = Demonstrations::new(movements.collect::<Result<_, _>>()?)?;

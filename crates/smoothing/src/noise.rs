@@ -1,6 +1,6 @@
 //! Noise of recorded positions and velocities, without smoothing.
 
-use motion::{Demonstrations, Trajectory};
+use motion::{Demonstrations, Trajectory, median};
 use nalgebra::{DMatrix, DVector};
 
 use crate::SmoothingError;
@@ -115,13 +115,12 @@ fn deviations<const N: usize>(
         return Err(SmoothingError::TooFewDifferences { found, needed: NEEDED });
     }
     let dim = demonstrations.dim();
-    let mut all = Vec::with_capacity(found);
     Ok(DVector::from_fn(dim, |axis, _| {
-        all.clear();
+        let mut all = Vec::with_capacity(found);
         for trajectory in trajectories {
             all.extend(differences::<N>(series(trajectory).as_slice(), dim, axis, trajectory.times()));
         }
-        MEDIAN_TO_DEVIATION * median(&mut all).unwrap_or(0.0) / squares::<N>().sqrt()
+        MEDIAN_TO_DEVIATION * median(all).unwrap_or(0.0) / squares::<N>().sqrt()
     }))
 }
 
@@ -156,19 +155,4 @@ fn divided_difference<const N: usize>(times: [f64; N]) -> [f64; N] {
 fn squares<const N: usize>() -> f64 {
     let binomial = |k: usize| (1..=k).map(|i| (N - i) as f64 / i as f64).product::<f64>();
     (0..N).map(|k| binomial(k).powi(2)).sum()
-}
-
-/// The middle value, or the mean of both; none of nothing.
-pub(crate) fn median(values: &mut [f64]) -> Option<f64> {
-    let middle = values.len() / 2;
-    if values.is_empty() {
-        return None;
-    }
-    let odd = values.len() % 2 == 1;
-    let (below, &mut upper, _) = values.select_nth_unstable_by(middle, f64::total_cmp);
-    if odd {
-        return Some(upper);
-    }
-    let lower = below.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    Some(lower + (upper - lower) / 2.0)
 }

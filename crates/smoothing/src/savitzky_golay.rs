@@ -31,12 +31,16 @@ impl SavitzkyGolay {
     /// # Errors
     /// [`SmoothingError::Parameter`], or [`SmoothingError::Motion`] if a smoothed state overflows.
     pub fn smooth(&self, demonstrations: &Demonstrations) -> Result<Demonstrations, SmoothingError> {
-        self.check()?;
-        let smoothed = demonstrations.trajectories().iter().map(|trajectory| self.smooth_one(trajectory));
+        let smoothed = demonstrations.trajectories().iter().map(|trajectory| self.smooth_trajectory(trajectory));
         Ok(Demonstrations::new(smoothed.collect::<Result<_, _>>()?)?)
     }
 
-    fn smooth_one(&self, trajectory: &Trajectory) -> Result<Trajectory, SmoothingError> {
+    /// [`SavitzkyGolay::smooth`] of one movement.
+    ///
+    /// # Errors
+    /// As [`SavitzkyGolay::smooth`].
+    pub fn smooth_trajectory(&self, trajectory: &Trajectory) -> Result<Trajectory, SmoothingError> {
+        self.check()?;
         let n = trajectory.n_samples();
         let window = self.window.min(n);
         let degrees = self.degree + 1;

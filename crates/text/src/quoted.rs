@@ -3,7 +3,7 @@ use std::path::Path;
 
 use crate::is_hidden;
 
-/// A path, or any other word, as one would type it in a shell; in quotes where they are needed. Names with characters that
+/// A path as one would type it in a shell; in quotes where they are needed. Names with characters that
 /// cannot be seen, or that are not UTF-8, are written in the `$'…'` of bash, zsh and ksh.
 pub fn quoted(path: &Path) -> String {
     let Some(name) = path.to_str().filter(|name| !name.contains(|c| c == '\n' || c == '\t' || is_hidden(c))) else {

@@ -5,6 +5,7 @@ use rand::Rng;
 use serde::{Deserialize, Serialize};
 
 use super::regression::{default_params, fit};
+use crate::checks::one_context;
 use crate::{AlignError, DirectPolicy, Origin};
 
 /// Direct policy learning, the naive baseline: regression of the observed velocities on the states, ignoring constraints.
@@ -39,6 +40,7 @@ impl DirectPolicyLearning {
         held_out: &[SampleIndex],
         rng: &mut dyn Rng,
     ) -> Result<DirectPolicy, AlignError> {
+        one_context(demonstrations)?;
         let (states, velocities) = observed(demonstrations, held_out);
         let regression = fit(&self.params, self.passes, self.cutoff, &states, &velocities, rng)?;
         Ok(DirectPolicy::new(regression, Origin::new(demonstrations)))

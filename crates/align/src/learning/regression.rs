@@ -1,6 +1,7 @@
 //! LWPR as both learners use it.
 
 use lwpr::{LwprParams, StandardisedModel, Training};
+use motion::standard_deviation;
 use nalgebra::{DMatrix, DVector, DVectorView};
 use rand::Rng;
 
@@ -47,7 +48,7 @@ pub(crate) fn support(model: &StandardisedModel, state: DVectorView<'_, f64>) ->
 /// Distances between states are Euclidean in the alignment and in the policy's gradient; receptive fields that are round
 /// in the same sense keep it so.
 fn spread(states: &DMatrix<f64>) -> f64 {
-    let deviations: Vec<f64> = states.row_iter().map(|row| deviation(row.iter().copied())).collect();
+    let deviations: Vec<f64> = states.row_iter().map(|row| standard_deviation(row.iter().copied())).collect();
     let largest = deviations.iter().copied().fold(0.0, f64::max);
     if largest == 0.0 {
         return 1.0;
@@ -56,18 +57,6 @@ fn spread(states: &DMatrix<f64>) -> f64 {
     let squares = deviations.iter().map(|deviation| deviation / largest).filter(|&share| share >= IDLE);
     let squares: Vec<f64> = squares.map(|share| share * share).collect();
     largest * (squares.iter().sum::<f64>() / squares.len() as f64).sqrt()
-}
-
-/// Standard deviation of one dimension.
-fn deviation(values: impl ExactSizeIterator<Item = f64> + Clone) -> f64 {
-    let count = values.len() as f64;
-    let mean: f64 = values.clone().map(|value| value / count).sum();
-    let largest = values.clone().fold(0.0_f64, |largest, value| largest.max((value - mean).abs()));
-    // What rounding of the mean alone makes differ does not vary.
-    if largest <= 1e-14 * mean.abs() {
-        return 0.0;
-    }
-    largest * values.map(|value| ((value - mean) / largest).powi(2) / count).sum::<f64>().sqrt()
 }
 
 #[cfg(test)]

@@ -12,20 +12,37 @@ pub trait TaskConstraint: PfaffianConstraint {
     /// The velocity A⁺b that the task demands, (n).
     ///
     /// # Errors
-    /// Those of [`TaskConstraint::task`] and [`PfaffianConstraint::matrix`]; [`ConstraintError::NotFinite`] for entries of A that are not
-    /// finite.
+    /// Those of [`TaskConstraint::task`] and [`PfaffianConstraint::matrix`]; [`ConstraintError::NotFinite`] also for an entry of b, in
+    /// column n.
     fn task_velocity(&self, state: DVectorView<'_, f64>, time: f64) -> Result<DVector<f64>, ConstraintError> {
-        Ok(least_norm(&self.matrix(state, time)?, &self.task(state)?))
+        least_norm(self.matrix(state, time)?, self.task(state)?)
     }
 }
 
-/// A⁺b, with singular values below 1e-12 of the largest entry taken for 0.
-fn least_norm(matrix: &DMatrix<f64>, right: &DVector<f64>) -> DVector<f64> {
-    if matrix.iter().chain(right).any(|entry| !entry.is_finite()) {
-        return DVector::repeat(matrix.ncols(), f64::NAN);
+/// A⁺b. Rows are scaled to length 1, so that their units do not decide which of them count; singular values below 1e-12 count as 0.
+fn least_norm(mut matrix: DMatrix<f64>, mut right: DVector<f64>) -> Result<DVector<f64>, ConstraintError> {
+    for row in 0..matrix.nrows() {
+        if let Some(column) = matrix.row(row).iter().position(|entry| !entry.is_finite()) {
+            return Err(ConstraintError::NotFinite { row, column, value: matrix[(row, column)] });
+        }
+        require_finite(row, matrix.ncols(), right[row])?;
+        let length = matrix.row(row).norm();
+        if length > 0.0 {
+            matrix.row_mut(row).unscale_mut(length);
+            right[row] /= length;
+        }
     }
     let svd = matrix.clone().svd(true, true);
-    svd.solve(right, 1e-12 * matrix.amax()).unwrap_or_else(|_| DVector::zeros(matrix.ncols()))
+    let solve = |right: &DVector<f64>| svd.solve(right, 1e-12).unwrap_or_else(|_| DVector::zeros(matrix.ncols()));
+    let velocity = solve(&right);
+    // What the decomposition's rounding has left.
+    let rest = &right - &matrix * &velocity;
+    Ok(velocity + solve(&rest))
+}
+
+/// Refuses an entry of b, in column n.
+fn require_finite(row: usize, column: usize, value: f64) -> Result<(), ConstraintError> {
+    if value.is_finite() { Ok(()) } else { Err(ConstraintError::NotFinite { row, column, value }) }
 }
 
 /// The same A and b at every state and time.
@@ -45,8 +62,8 @@ impl LinearTask {
     /// If b has not one entry for each row of A.
     pub fn new(matrix: DMatrix<f64>, task: DVector<f64>) -> Result<Self, ConstraintError> {
         assert_eq!(matrix.nrows(), task.len(), "one entry of b for each row of A");
-        if let Some((row, &value)) = task.iter().enumerate().find(|(_, value)| !value.is_finite()) {
-            return Err(ConstraintError::NotFinite { row, column: matrix.ncols(), value });
+        for (row, &value) in task.iter().enumerate() {
+            require_finite(row, matrix.ncols(), value)?;
         }
         Ok(LinearTask { constraint: LinearConstraint::new(matrix)?, task })
     }

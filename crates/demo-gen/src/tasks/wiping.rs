@@ -91,7 +91,7 @@ impl Wiping {
     /// contact, for its displacement.
     ///
     /// # Errors
-    /// [`DemoGenError::Tilt`], [`DemoGenError::StartVariance`], [`DemoGenError::NoTrajectory`], or [`DemoGenError::InTrajectory`] with what
+    /// [`DemoGenError::Tilt`], [`DemoGenError::Deviation`], [`DemoGenError::TaskRate`], [`DemoGenError::NoTrajectory`], or [`DemoGenError::InTrajectory`] with what
     /// [`RollOut::record`] says.
     pub fn record<R: Rng + ?Sized>(&self, rng: &mut R) -> Result<Vec<Recording>, DemoGenError> {
         self.check()?;
@@ -132,13 +132,15 @@ impl Wiping {
         if !(0.0..std::f64::consts::FRAC_PI_2).contains(&tilt) {
             return Err(DemoGenError::Tilt { largest: tilt });
         }
-        for deviation in [self.start_deviation, self.off_surface] {
-            if !(deviation.is_finite() && deviation >= 0.0) {
-                return Err(DemoGenError::StartVariance { variance: deviation });
+        for (name, value) in
+            [("start deviation", self.start_deviation), ("deviation off the surface", self.off_surface)]
+        {
+            if !(value.is_finite() && value >= 0.0) {
+                return Err(DemoGenError::Deviation { name, value });
             }
         }
         let rate = self.task_rate;
-        if rate.is_finite() && rate > 0.0 { Ok(()) } else { Err(DemoGenError::Task { largest: rate }) }
+        if rate.is_finite() && rate > 0.0 { Ok(()) } else { Err(DemoGenError::TaskRate { rate }) }
     }
 }
 

@@ -56,7 +56,7 @@ pub enum UrdfProblem {
         attribute: &'static str,
     },
     /// Text where a number should be.
-    #[error("{attribute}: \"{text}\" is not a number (numbers have a decimal point and are separated by spaces)")]
+    #[error("{attribute}: \"{text}\" is not a number (decimal mark is a point, numbers are separated by spaces)")]
     Number {
         /// The attribute.
         attribute: &'static str,

@@ -102,7 +102,7 @@ impl BatchTraining<'_> {
         Ok(self.sub_model.fields.len() - n_fields)
     }
 
-    /// Trains fields with equally many directions side by side. Register that run out of samples take the next field;
+    /// Trains fields with equally many directions side by side. Lanes that run out of samples take the next field;
     /// stragglers finish alone.
     #[inline(always)]
     fn train_group<S: Simd>(&mut self, simd: S, group: &[(usize, Reverse<usize>, usize)]) {

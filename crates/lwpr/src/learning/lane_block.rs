@@ -39,7 +39,7 @@ impl<T> Field<T> {
 }
 
 impl<S: Simd> LaneBlock<S> {
-    /// For fields of `n_directions`. Register that have not been filled hold something whose learning is harmless.
+    /// For fields of `n_directions`. Lanes that have not been filled hold something whose learning is harmless.
     pub(crate) fn new(simd: S, settings: &Settings, n_directions: usize) -> Self {
         let one = Register::splat(simd, 1.0);
         let width = settings.n_in * S::F64_LANES;

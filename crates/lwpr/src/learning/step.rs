@@ -21,7 +21,7 @@ pub(crate) struct Step<T: Number> {
     pub(super) transient: T,
     /// A step down of more than this is not made.
     pub(super) limit: T,
-    /// Register that move at all.
+    /// Lanes that move at all.
     settled: T::Mask,
     /// Learning rate of the learning rates.
     pub(crate) rate: Option<f64>,

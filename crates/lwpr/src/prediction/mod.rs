@@ -46,6 +46,7 @@ impl Prediction {
     /// Asks output after output for everything. Returns whether all have support.
     fn fill_with(&mut self, n_in: usize, n_out: usize, mut ask: impl FnMut(usize, Wanted<'_>) -> Option<f64>) -> bool {
         assert_eq!(self.gradient.shape(), (n_out, n_in), "the prediction has the shape of the model");
+        self.max_activation.fill(0.0);
         let mut supported = true;
         for output in 0..n_out {
             let wanted = Wanted {

@@ -8,8 +8,9 @@ use super::query::{Query, Scale};
 use super::record::PredictorRecord;
 use super::sweep::{Wanted, sweep};
 use super::threads::worth_a_thread;
-use super::{Prediction, are_finite, is_query};
+use super::{Prediction, is_query};
 use crate::error::Side;
+use crate::settings::require_finite;
 use crate::{Kernel, Lwpr, LwprError};
 
 /// An immutable snapshot of a model that predicts; made by [`Lwpr::predictor`]. Threads may share it.
@@ -288,11 +289,6 @@ impl Predictor {
         if xs.nrows() != self.n_in() {
             return Err(LwprError::Dimension { side: Side::Input, found: xs.nrows(), expected: self.n_in() });
         }
-        for (sample, x) in xs.column_iter().enumerate().filter(|(_, x)| !are_finite(x.as_slice())) {
-            if let Some(dimension) = x.iter().position(|x| !x.is_finite()) {
-                return Err(LwprError::BadValue { side: Side::Input, sample, dimension, value: x[dimension] });
-            }
-        }
-        Ok(())
+        require_finite(xs, Side::Input)
     }
 }

@@ -3,7 +3,7 @@
 pub(crate) mod kernel;
 pub(crate) mod params;
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DMatrixView, DVector};
 
 use crate::error::Side;
 use crate::{LwprError, LwprParams, Metric, MetricAdaptation};
@@ -105,6 +105,16 @@ impl Settings {
             Some(dimension) => Err(LwprError::BadValue { side, sample, dimension, value: values[dimension] }),
         }
     }
+}
+
+/// Refuses numbers that are not finite, column after column.
+pub(crate) fn require_finite(values: DMatrixView<'_, f64>, side: Side) -> Result<(), LwprError> {
+    for (sample, column) in values.column_iter().enumerate() {
+        if let Some(dimension) = column.iter().position(|value| !value.is_finite()) {
+            return Err(LwprError::BadValue { side, sample, dimension, value: column[dimension] });
+        }
+    }
+    Ok(())
 }
 
 /// Refuses more dimensions than a model can have, before anything is allocated for them.

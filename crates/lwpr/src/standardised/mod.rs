@@ -8,8 +8,9 @@ use nalgebra::{DMatrixView, DVector, DVectorView, DVectorViewMut};
 use rand::Rng;
 use serde::{Deserialize, Serialize};
 
+use crate::settings::require_finite;
 use crate::standardised::record::StandardisedRecord;
-use crate::{Lwpr, LwprError, LwprParams, Predictor};
+use crate::{Lwpr, LwprError, LwprParams, Predictor, Side};
 
 /// Training of LWPR on standardised outputs, and the cutoff of its predictions.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -49,11 +50,15 @@ impl Training {
         if ys.ncols() == 0 {
             return Err(LwprError::EmptyBatch);
         }
+        // Before they are centred, which would spread one bad value over all samples of its output.
+        require_finite(ys, Side::Output)?;
         let mean = DVector::from_iterator(ys.nrows(), ys.row_iter().map(|row| mean(row.iter().copied())));
         let mut centred = ys.into_owned();
         centred.column_iter_mut().for_each(|mut column| column -= &mean);
-        let spreads =
-            || DVector::from_iterator(centred.nrows(), centred.row_iter().map(|row| spread(row.iter().copied())));
+        let spreads = || {
+            let each = centred.row_iter().zip(&mean).map(|(row, &mean)| spread(row.iter().copied(), mean));
+            DVector::from_iterator(centred.nrows(), each)
+        };
         let norm_out = self.params.norm_out.clone().unwrap_or_else(spreads);
         let params = LwprParams { norm_out: Some(norm_out), ..self.params.clone() };
         let mut model = params.build(xs.nrows(), ys.nrows())?;
@@ -160,11 +165,14 @@ fn mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {
     values.map(|value| value / count).sum()
 }
 
-/// Standard deviation of centred values; 1 where they are all equal, so that it can divide.
-fn spread(values: impl ExactSizeIterator<Item = f64> + Clone) -> f64 {
+/// By how much equal values and their mean may differ, as a share of the mean.
+const ROUNDING: f64 = 1e-13;
+
+/// Standard deviation of values about their mean, which was subtracted; 1 where they are all equal, so that it can divide.
+fn spread(values: impl ExactSizeIterator<Item = f64> + Clone, mean: f64) -> f64 {
     let count = values.len() as f64;
     let largest = values.clone().fold(0.0_f64, |largest, value| largest.max(value.abs()));
-    if largest == 0.0 {
+    if largest <= ROUNDING * mean.abs() {
         return 1.0;
     }
     let mean_square = values.map(|value| (value / largest).powi(2)).sum::<f64>() / count;

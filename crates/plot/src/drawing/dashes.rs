@@ -23,15 +23,20 @@ pub(crate) fn drawn(element: &Primitive) -> Vec<Primitive> {
         stroke_width: *stroke_width,
         stroke_dasharray: None,
     };
-    if points.is_empty() { vec![] } else { dashed(&points, &pattern).into_iter().map(solid).collect() }
+    dashed(&points, &pattern).into_iter().map(solid).collect()
 }
 
-/// The parts of a line that a pattern draws; its lengths are measured on the panel.
+/// Farther out, pixels, no dash can be seen, and a line to there would have more than memory holds.
+const OUTSIDE: f64 = 1e5;
+
+/// The parts of a line that a pattern draws; its lengths are measured on the panel. A line that leads far outside is solid.
 pub(crate) fn dashed(points: &[Point3<f64>], pattern: &[f64]) -> Vec<Vec<Point3<f64>>> {
-    if pattern.is_empty() {
+    let near = |point: &Point3<f64>| point.x.abs() < OUTSIDE && point.y.abs() < OUTSIDE;
+    if pattern.is_empty() || !points.iter().all(near) {
         return vec![points.to_vec()];
     }
-    let mut dashes = vec![vec![points[0]]];
+    let Some(&first) = points.first() else { return vec![] };
+    let mut dashes = vec![vec![first]];
     let (mut part, mut left) = (0, pattern[0]);
     for pair in points.windows(2) {
         let (mut from, to) = (pair[0], pair[1]);
@@ -79,5 +84,14 @@ mod tests {
             })
             .collect();
         assert_eq!(ends, [[(0.0, 5.0), (3.0, 5.0)], [(4.5, 5.0), (7.5, 5.0)], [(9.0, 5.0), (12.0, 5.0)]]);
+    }
+
+    #[test]
+    fn lines_without_points_or_far_outside_end() {
+        assert!(dashed(&[], &[3.0, 1.5]).is_empty());
+        for far in [1e12, f64::INFINITY, f64::NAN] {
+            let line = [Point3::origin(), Point3::new(far, 0.0, 0.0)];
+            assert_eq!(dashed(&line, &[3.0, 1.5]).len(), 1);
+        }
     }
 }

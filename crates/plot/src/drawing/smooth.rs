@@ -39,8 +39,10 @@ fn dots(Field { x, y, values }: &Field, [low, high]: [f64; 2]) -> Vec<[u8; 4]> {
         let ((i, up), (j, right)) = (place(row), place(column));
         let level = |i: usize| values[i][j] * (1.0 - right) + values[i][j + 1] * right;
         let value = level(i) * (1.0 - up) + level(i + 1) * up;
-        let [r, g, b] = height((value - low) / (high - low));
-        [r, g, b, 255]
+        let share = (value - low) / (high - low);
+        // Of a field that is the same everywhere, the colour in the middle.
+        let [r, g, b] = height(if share.is_nan() { 0.5 } else { share });
+        [r, g, b, if value.is_finite() { 255 } else { 0 }]
     };
     (0..rows)
         .rev()
@@ -67,5 +69,13 @@ mod tests {
         // On a scale that goes twice as far up the highest place has the colour of the middle.
         let darker = super::dots(&field, [0.0, 8.0]);
         assert!(light(&darker[0]) < light(&dots[0]) && darker[0][..3] == height(0.5 - 1.0 / 48.0));
+    }
+
+    #[test]
+    fn a_level_field_has_the_colour_in_the_middle_and_unknown_places_none() {
+        let of = |value| Field { x: vec![0.0, 1.0], y: vec![0.0, 1.0], values: vec![vec![value; 2]; 2] };
+        let [r, g, b] = height(0.5);
+        assert!(dots(&of(3.0), [3.0, 3.0]).iter().all(|dot| *dot == [r, g, b, 255]));
+        assert!(dots(&of(f64::NAN), [0.0, 1.0]).iter().all(|dot| dot[3] == 0));
     }
 }

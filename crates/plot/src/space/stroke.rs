@@ -14,6 +14,8 @@ use crate::{Dash, Stroke};
 
 /// Whether it is hidden is asked at steps of so many pixels.
 const STEP: f64 = 1.5;
+/// A line is asked at no more places than this.
+const STEPS: f64 = 1e5;
 /// What lies on a surface is before it, by this many pixels.
 const LIFT: f64 = 0.75;
 /// Points this near to the line between their neighbours are left out, pixels.
@@ -37,11 +39,13 @@ pub(super) fn draw(item: &Item, bodies: &[Body], view: &View, scene: &mut Scene)
     }
 }
 
-/// A line through points of the panel, in its dashes.
+/// A line through points of the panel, in its dashes, interrupted where a point is not finite.
 pub(super) fn line(points: &[Point3<f64>], style: &Stroke, bodies: &[Body], scene: &mut Scene) {
-    for dash in dashed(&straightened(points), &pattern(style)) {
-        for (points, color) in visible(&dash, rgb(style.color), bodies) {
-            scene.add(polyline(&points, color, style.width));
+    for points in points.split(|point| !point.iter().all(|value| value.is_finite())) {
+        for dash in dashed(&straightened(points), &pattern(style)) {
+            for (points, color) in visible(&dash, rgb(style.color), bodies) {
+                scene.add(polyline(&points, color, style.width));
+            }
         }
     }
 }
@@ -51,7 +55,7 @@ fn visible(points: &[Point3<f64>], color: Rgb, bodies: &[Body]) -> Vec<(Vec<Poin
     let mut parts: Vec<(Vec<Point2<f64>>, Option<Rgb>)> = vec![];
     for pair in points.windows(2) {
         let (from, along) = (pair[0], pair[1] - pair[0]);
-        let steps = if bodies.is_empty() { 1 } else { (along.xy().norm() / STEP).ceil().max(1.0) as usize };
+        let steps = if bodies.is_empty() { 1 } else { (along.xy().norm() / STEP).ceil().clamp(1.0, STEPS) as usize };
         let at = |step: f64| from + along * (step / steps as f64);
         for step in 0..steps {
             let (middle, end) = (at(step as f64 + 0.5), at(step as f64 + 1.0).xy());

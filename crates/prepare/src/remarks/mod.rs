@@ -9,7 +9,7 @@ mod speed_limit;
 
 pub use end_places::end_places;
 pub(crate) use held::held;
-use motion::{Demonstrations, Finding, Trajectory, Verdict};
+use motion::{Demonstrations, Finding, Trajectory, Verdict, standard_deviation};
 pub(crate) use no_state::no_state;
 pub use pressing::pressing;
 use speed_limit::speed_limit;
@@ -44,13 +44,7 @@ pub(crate) fn of_scale(demonstrations: &Demonstrations, state: &[StateChannel], 
 
 /// Standard deviation of every channel, (n).
 fn spreads(demonstrations: &Demonstrations) -> Vec<f64> {
-    let samples = demonstrations.n_samples() as f64;
-    let spread = |axis: usize| {
-        let values = demonstrations.values(axis);
-        let mean = values.clone().sum::<f64>() / samples;
-        (values.map(|x| (x - mean).powi(2)).sum::<f64>() / samples).sqrt()
-    };
-    (0..demonstrations.dim()).map(spread).collect()
+    (0..demonstrations.dim()).map(|axis| standard_deviation(demonstrations.values(axis))).collect()
 }
 
 /// A channel whose values spread as if it had another unit than the others.

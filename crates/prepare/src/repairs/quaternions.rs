@@ -71,13 +71,13 @@ fn same_signs(episodes: &mut [Episode], first: usize) -> usize {
                 velocities.fixed_view_mut::<4, 1>(first, i).scale_mut(sign);
             }
         }
-        made_of_positions(episode, first);
+        make_of_positions(episode, first);
     }
     flips
 }
 
 /// Velocities that were made of the positions jump with them: those are made anew.
-fn made_of_positions(episode: &mut Episode, first: usize) {
+fn make_of_positions(episode: &mut Episode, first: usize) {
     let Some(velocities) = &mut episode.velocities else { return };
     for i in 1..episode.positions.ncols() {
         let seconds = episode.times.seconds(i - 1, i);

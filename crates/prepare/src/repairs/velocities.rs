@@ -1,4 +1,4 @@
-use motion::{Channel, Episode, Verdict};
+use motion::{Channel, Episode, Verdict, upper_median};
 use nalgebra::DVector;
 
 use crate::notes::Notes;
@@ -45,6 +45,15 @@ pub(crate) fn decide(
             _ if recorded < episodes.len() => format!("only {recorded} of {} episodes have them", episodes.len()),
             _ => "ignored as requested".to_owned(),
         };
+        if options.velocities == VelocityUse::Recorded {
+            let but = if recorded == 0 { "there are none" } else { &why };
+            let what = format!("recorded velocities were requested, but {but}: they are taken from the positions");
+            notes.found(
+                Verdict::Doubtful,
+                what,
+                "record velocities in every episode, or leave out the episodes without",
+            );
+        }
         notes.decided("velocities", "from positions", why, "--integration");
         return Agreement::None;
     }
@@ -163,7 +172,9 @@ fn made_of_positions(episodes: &[Episode]) -> bool {
 /// Converts velocities in other units than the steps to those of positions and stamps, and reports it.
 fn rescale(episodes: &mut [Episode], fit: &Steps, channels: &[Channel], notes: &mut Notes) {
     let (low, high) = (fit.factors.min(), fit.factors.max());
-    let step = episodes[0].times.seconds(0, 1);
+    let steps =
+        |episode: &Episode| episode.times.seconds(0, episode.n_samples() - 1) / (episode.n_samples() - 1) as f64;
+    let step = upper_median(episodes.iter().map(steps).collect()).unwrap_or(1.0);
     if step > SLOW && fit.factors.iter().all(|factor| (1.0 / AGREE..AGREE).contains(&(factor * 1000.0))) {
         for episode in episodes.iter_mut() {
             episode.times = episode.times.divided_by(1000.0);

@@ -18,25 +18,32 @@ pub(crate) fn as_requested(
     smoothing: Smoothing,
     notes: &mut Notes,
 ) -> Result<Option<Demonstrations>, PrepareError> {
-    let step = demonstrations.trajectories()[0].time_step();
-    let window = match smoothing {
+    let window: &dyn Fn(&Trajectory) -> usize = match smoothing {
         Smoothing::Auto => return Ok(None),
         Smoothing::Off => {
             notes.decided("smoothing", "none: positions as recorded", "as requested", "--smooth");
             return Ok(Some(demonstrations.clone()));
         }
-        Smoothing::Samples(window) => window,
-        Smoothing::Seconds(seconds) => nearest_odd(seconds / step),
+        Smoothing::Samples(window) => &move |_| window,
+        Smoothing::Seconds(seconds) => &move |movement| nearest_odd(seconds / movement.time_step()),
     };
-    if window < LEAST || window.is_multiple_of(2) {
-        return Err(PrepareError::Smoothing { window, step });
-    }
-    let smoothed = SavitzkyGolay { window, ..SavitzkyGolay::default() }.smooth(demonstrations);
-    let smoothed = smoothed.map_err(|error| match error {
-        SmoothingError::Motion(source) => PrepareError::Episode { episode: "smoothed".to_owned(), source },
-        _ => PrepareError::Smoothing { window, step },
-    })?;
-    let value = format!("positions, window of {window} samples");
+    let episode = |source| PrepareError::Episode { episode: "smoothed".to_owned(), source };
+    let smoothed = demonstrations.trajectories().iter().map(|movement| {
+        let (window, step) = (window(movement), movement.time_step());
+        if window < LEAST || window.is_multiple_of(2) {
+            return Err(PrepareError::Smoothing { window, step });
+        }
+        SavitzkyGolay { window, ..SavitzkyGolay::default() }.smooth_trajectory(movement).map_err(|error| match error {
+            SmoothingError::Motion(source) => episode(source),
+            _ => PrepareError::Smoothing { window, step },
+        })
+    });
+    let smoothed = Demonstrations::new(smoothed.collect::<Result<_, _>>()?).map_err(episode)?;
+    let windows = || demonstrations.trajectories().iter().map(window);
+    let value = match (windows().min(), windows().max()) {
+        (Some(least), Some(most)) if least < most => format!("positions, windows of {least} to {most} samples"),
+        (least, _) => format!("positions, window of {} samples", least.unwrap_or_default()),
+    };
     notes.decided("smoothing", value, "as requested; local parabolas", "--smooth");
     Ok(Some(smoothed))
 }

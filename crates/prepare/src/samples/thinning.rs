@@ -43,6 +43,9 @@ pub(crate) fn decide(demonstrations: &Demonstrations, noise: &Noise, notes: &mut
 ///
 /// # Errors
 /// Where means overflow.
+///
+/// # Panics
+/// If `taken` is 0.
 pub fn thinned(demonstrations: &Demonstrations, taken: usize) -> Result<Demonstrations, MotionError> {
     let movements = demonstrations.trajectories().iter().map(|movement| means(movement, taken));
     Demonstrations::new(movements.collect::<Result<_, _>>()?)

@@ -7,8 +7,9 @@ use crate::piecewise::scaled::ScaledMovement;
 use crate::piecewise::segmentation::Segmentation;
 use crate::piecewise::windows::{Bases, Energy};
 
-/// Windows less likely than e to this power take no part.
+/// Of windows up to [`MANY`] samples, those less likely than e to this power take no part.
 const LEAST_LOG_PROBABILITY: f64 = -9.0;
+const MANY: f64 = 60.0;
 
 /// Windows of one degree with less weight take no part.
 const LEAST_WEIGHT: f64 = 1e-5;
@@ -45,9 +46,11 @@ impl Averages {
         let (mut states, mut velocities) = (Sum::new(dim, n), Sum::new(dim, n));
         let (mut coefficients, mut shrunk) = (Vec::new(), Vec::new());
         let mut by_degree = vec![0.0; model.degrees.len()];
+        // L²/2 windows share a sample, so that each of longer ones is less likely.
+        let least = LEAST_LOG_PROBABILITY + 2.0 * (MANY / segmentation.longest as f64).ln().min(0.0);
         for ((window, log_probability), energy) in segmentation.log_probabilities().zip(energies) {
             window_begins[window.first] += log_probability.exp();
-            if log_probability < LEAST_LOG_PROBABILITY {
+            if log_probability < least {
                 continue;
             }
             let polynomials = bases.of(movement, window);

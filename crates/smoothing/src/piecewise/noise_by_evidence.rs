@@ -1,8 +1,9 @@
 //! The noise variance of the highest marginal likelihood.
 
+use motion::median;
 use rayon::prelude::*;
 
-use crate::noise::{differences, median};
+use crate::noise::differences;
 use crate::piecewise::scaled::Scaled;
 use crate::piecewise::windows::{Bases, Energy, energies};
 
@@ -54,13 +55,13 @@ pub(crate) fn most_likely(scaled: &Scaled<'_>, log_evidence: impl Fn(f64) -> f64
 
 /// (median |third difference| / 0.6745)² / 20 over all axes: 20 is the sum of squared binomials.
 fn first_guess(scaled: &Scaled<'_>) -> f64 {
-    let mut differences: Vec<f64> = scaled
+    let differences: Vec<f64> = scaled
         .movements
         .iter()
         .flat_map(|movement| {
             (0..movement.dim).flat_map(|j| differences::<4>(&movement.rows, movement.dim, j, movement.recorded.times()))
         })
         .collect();
-    let deviation = median(&mut differences).unwrap_or(0.0) / 0.6745;
+    let deviation = median(differences).unwrap_or(0.0) / 0.6745;
     deviation * deviation / 20.0 + 1e-16 * scaled.variance
 }

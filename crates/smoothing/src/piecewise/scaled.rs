@@ -1,6 +1,6 @@
 //! Input of the smoother: axes of equal noise, each movement about its mean.
 
-use motion::{Demonstrations, Trajectory};
+use motion::{Demonstrations, Trajectory, standard_deviation};
 use nalgebra::DVector;
 use serde::Serialize;
 
@@ -97,12 +97,5 @@ fn check(scales: &DVector<f64>, dim: usize) -> Result<(), SmoothingError> {
 
 /// Variance of one coordinate over all samples of all movements.
 fn variance_of_axis(demonstrations: &Demonstrations, axis: usize) -> f64 {
-    let values = || demonstrations.values(axis);
-    let first = demonstrations.trajectories()[0].states()[(axis, 0)];
-    if values().all(|value| value == first) {
-        return 0.0; // the mean of equal numbers may differ from them by rounding
-    }
-    let n = values().count() as f64;
-    let mean = values().sum::<f64>() / n;
-    values().map(|value| (value - mean) * (value - mean)).sum::<f64>() / n
+    standard_deviation(demonstrations.values(axis)).powi(2)
 }

@@ -7,7 +7,7 @@ use crate::piecewise::windows::{Energy, Window, windows};
 #[derive(Debug)]
 pub(crate) struct Segmentation {
     n_samples: usize,
-    longest: usize,
+    pub(crate) longest: usize,
     log_switch: f64,
     log_stay: f64,
     /// S(a, b) at `a * longest + (b − a)`; −∞ where there is no such window.

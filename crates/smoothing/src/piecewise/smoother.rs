@@ -57,7 +57,7 @@ impl Default for Smoother {
 impl Smoother {
     /// Smooths the positions of every demonstration and ignores recorded velocities.
     ///
-    /// Takes time O(N · L · p · n) and memory O(N · L) a trajectory, L the longest window, p the highest degree.
+    /// Takes time O(N · L² · p · n) and memory O(N · L) a trajectory, L the longest window, p the highest degree.
     ///
     /// # Errors
     /// [`SmoothingError::Parameter`], [`SmoothingError::AxisScales`], [`SmoothingError::NoMotion`] or
