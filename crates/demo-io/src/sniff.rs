@@ -217,9 +217,23 @@ pub(crate) fn folder(path: &Path, name: &str) -> Result<Folder, ReadError> {
     Ok(Folder::Files)
 }
 
-/// Whether a file in a folder is one to read; others (notes, videos, pictures) are passed over.
+/// How a model begins that was learnt from recordings.
+const MODEL: &[u8] = br#"{"format":"policy-align model""#;
+
+/// Whether a file is a model or its trust report, which `fit` may have written beside the recordings.
+fn is_learnt(path: &Path) -> bool {
+    if path.file_name().is_some_and(|name| name.to_string_lossy().ends_with(".trust.json")) {
+        return true;
+    }
+    let mut start = [0; MODEL.len()];
+    let read = std::fs::File::open(path).and_then(|mut file| std::io::Read::read_exact(&mut file, &mut start));
+    read.is_ok() && start == MODEL
+}
+
+/// Whether a file in a folder is one to read; others (notes, videos, pictures, what was learnt) are passed over.
 pub(crate) fn is_recording(path: &Path) -> bool {
     let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
     let hidden = path.file_name().is_some_and(|name| name.to_string_lossy().starts_with('.'));
-    !hidden && (by_extension(&extension).is_some() || matches!(&extension[..], "db3" | "bag"))
+    let of_data = by_extension(&extension).is_some() || matches!(&extension[..], "db3" | "bag");
+    !hidden && of_data && !(extension == "json" && is_learnt(path))
 }

@@ -7,7 +7,7 @@ mod running;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use running::{Ran, examples};
+use running::{Ran, examples, run_in};
 use serde_json::Value;
 
 /// The recordings among the examples and among the samples of the readers' tests.
@@ -196,5 +196,19 @@ fn a_plot_proposes_a_roll_out_that_works() {
     ] {
         let lines = followed(folder.path(), line);
         assert!(lines[1].contains(kept), "{lines:#?}");
+    }
+}
+
+/// A model and its report beside the recordings are no recordings.
+#[test]
+fn a_folder_can_be_learnt_from_again() {
+    let (folder, _) = folder_with(&examples().join("toy.csv"));
+    for line in [
+        "fit . -o ./model.json --max-rows 60 --inducing 0",
+        "fit . -o ./model.json --max-rows 60 --inducing 0",
+        "check .",
+    ] {
+        let ran = run_in(folder.path(), line);
+        assert!(matches!(ran.code, Some(0 | 1)), "{line}: {}", ran.err);
     }
 }
