@@ -102,7 +102,7 @@ fn the_picture_of_a_policy_says_what_it_shows() {
 
 /// Numbers between 0 and 1 that look random.
 fn noise(at: usize) -> f64 {
-    ((at as f64 + 1.0) * 12.9898).sin().mul_add(43_758.545_3, 0.0).rem_euclid(1.0)
+    ((at as f64 + 2.0) * 12.9898).sin().mul_add(43_758.545_3, 0.0).rem_euclid(1.0)
 }
 
 /// The page of movements to different goals in three channels, which no policy of the state makes, and one of a good policy in
