@@ -82,6 +82,7 @@ mod named;
 mod robot_frames;
 mod roll_out;
 mod serving;
+mod single_precision;
 mod stored;
 mod trust;
 
@@ -92,7 +93,7 @@ pub use choice::Choice;
 pub use context::ContextError;
 pub use error::FitError;
 pub use evaluate::{EvaluateError, Evaluation, Truth, evaluate};
-pub use export::{CSource, ExportError, Precision, single_precision_error, to_lerobot, to_onnx};
+pub use export::{CSource, ExportError, Precision, to_lerobot, to_onnx};
 pub use fit::{Digest, FitOptions, LearnerChoice, Progress, Step, fit, fit_with};
 pub use large::{DigestError, Digester, Division, FurtherPiece, Part, PartError, Unfinished};
 pub use learnt::Learnt;
@@ -108,6 +109,7 @@ pub use prepare::{
 pub use robot_frames::RobotFrames;
 pub use roll_out::{ConstraintFileError, ConstraintSet, JointLimits, Path, RollOut, RollOutError, Stop, spread_starts};
 pub use serving::{ControllerError, Halt, Quantity, VelocityCommand, VelocityController};
+pub use single_precision::single_precision_error;
 pub use stored::{ModelError, checksum_of, sha256, sha256_of_file, write_together, write_whole};
 pub use trust::{AlignedNumbers, Trust, TrustNumbers};
 

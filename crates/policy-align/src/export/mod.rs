@@ -12,7 +12,6 @@ mod onnx_gp;
 mod onnx_graph;
 mod onnx_lwpr;
 mod protobuf;
-mod single_precision;
 mod support_radius;
 mod tables;
 
@@ -20,4 +19,3 @@ pub use c::{CSource, Precision};
 pub use error::ExportError;
 pub use lerobot::to_lerobot;
 pub use onnx::to_onnx;
-pub use single_precision::single_precision_error;

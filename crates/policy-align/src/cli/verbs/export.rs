@@ -52,7 +52,7 @@ pub(crate) struct Export {
     /// Name of the C function
     #[arg(long, default_value = "policy")]
     name: String,
-    /// C in single precision; refused if actions would be off by more than 1 %
+    /// C in single precision, unless actions would change by 1 %
     #[arg(long)]
     float: bool,
     /// Start of a roll-out for MCAP; may be repeated [default: twelve]
