@@ -1,8 +1,10 @@
 //! Which format a file has: by its first bytes, then by its extension.
 
+use std::io::Read as _;
 use std::path::Path;
 
 use crate::input::Input;
+use crate::regular_file::open;
 use crate::{Fault, Format, ReadError};
 
 /// Kind of content, by the first bytes.
@@ -226,7 +228,7 @@ fn is_learnt(path: &Path) -> bool {
         return true;
     }
     let mut start = [0; MODEL.len()];
-    let read = std::fs::File::open(path).and_then(|mut file| std::io::Read::read_exact(&mut file, &mut start));
+    let read = open(path).and_then(|(mut file, _)| file.read_exact(&mut start));
     read.is_ok() && start == MODEL
 }
 

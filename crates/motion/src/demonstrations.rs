@@ -1,6 +1,6 @@
 use nalgebra::DMatrix;
 
-use crate::{MotionError, Trajectory};
+use crate::{MotionError, Trajectory, upper_median};
 
 /// K observed movements of one system, all with the same dimensions of state and context; lengths may differ.
 ///
@@ -75,5 +75,10 @@ impl Demonstrations {
     /// Number of samples of all movements together, M = Σ_k N_k.
     pub fn n_samples(&self) -> usize {
         self.trajectories.iter().map(Trajectory::n_samples).sum()
+    }
+
+    /// The usual time step, in seconds: the median of the movements' steps, the upper of two.
+    pub fn time_step(&self) -> f64 {
+        upper_median(self.trajectories.iter().map(Trajectory::time_step).collect()).expect("there is a movement")
     }
 }

@@ -47,8 +47,8 @@ impl Trajectory {
     pub fn stamped(times: Vec<f64>, states: DMatrix<f64>) -> Result<Self, MotionError> {
         // Of two stamps far from 0 the step has lost digits.
         let step = match times[..] {
-            [first, second, .., last] if !are_even(&times, second - first) => (last - first) / (times.len() - 1) as f64,
-            [first, second, ..] => second - first,
+            [first, second, ..] if are_even(&times, second - first) => second - first,
+            [first, .., last] => (last - first) / (times.len() - 1) as f64,
             _ => 1.0,
         };
         // A step that is none belongs to stamps that do not ascend.

@@ -36,8 +36,8 @@ impl Picture {
         Picture(sheet)
     }
 
-    /// As scalable vector graphics; bodies in space and fields in colours are pixels within. On white paper, or, where the reader prefers it, on
-    /// dark.
+    /// As scalable vector graphics; bodies in space and fields in colours are pixels within. On white paper, or, where the
+    /// reader prefers it, on dark.
     pub fn svg(&self) -> String {
         let mut svg = with_style_sheet(&decimals::shortened(&SvgBackend::new().render_scene(&self.0.scene)));
         for (number, raster) in self.0.rasters.iter().enumerate() {

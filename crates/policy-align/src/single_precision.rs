@@ -8,8 +8,8 @@ use crate::{Model, spread_starts};
 /// Places where actions are compared.
 const PLACES: usize = 200;
 
-/// By how much actions within the data change if all numbers of a model are rounded to `f32`: root mean square of the difference over that of
-/// the action. Rounding while it calculates adds about as much. None if the model cannot be rounded, or has no place to compare at.
+/// By how much actions within the data change if all numbers of a model are rounded to `f32`: root mean square of the
+/// difference over that of the action. Rounding while it calculates adds about as much. None if the model cannot be rounded, or has no place to compare at.
 pub fn single_precision_error(model: &Model) -> Option<f64> {
     let mut stored = serde_json::to_value(&model.learnt).ok()?;
     round(&mut stored);

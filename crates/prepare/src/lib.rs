@@ -80,7 +80,7 @@ pub use velocity_source::VelocitySource;
 
 use std::borrow::Cow;
 
-use motion::{Recordings, Trajectory, upper_median};
+use motion::Recordings;
 
 use notes::Notes;
 
@@ -145,9 +145,8 @@ pub fn prepare<'a>(
     remarks::about(&demonstrations, &state, &noise, &mut notes);
     degrees::remark(&state, &mut notes);
     samples::still::remark(&demonstrations, noise.positions.as_deref(), (&names, &recorded), &mut notes);
-    let time_steps = demonstrations.trajectories().iter().map(Trajectory::time_step);
     Ok(Prepared {
-        time_step: upper_median(time_steps.collect()).expect("there is an episode"),
+        time_step: demonstrations.time_step(),
         episodes: names,
         constraints,
         demonstrations,

@@ -1,4 +1,4 @@
-use motion::{Demonstrations, Trajectory, upper_median};
+use motion::Demonstrations;
 use serde::{Deserialize, Serialize};
 
 use crate::AlignError;
@@ -31,10 +31,9 @@ pub struct Origin {
 
 impl Origin {
     pub(crate) fn new(demonstrations: &Demonstrations) -> Self {
-        let steps: Vec<f64> = demonstrations.trajectories().iter().map(Trajectory::time_step).collect();
         Origin {
-            time_step: upper_median(steps.clone()).expect("there is a demonstration"),
-            n_trajectories: steps.len(),
+            time_step: demonstrations.time_step(),
+            n_trajectories: demonstrations.n_trajectories(),
             kept: None,
             warnings: Vec::new(),
             labels: Vec::new(),

@@ -91,8 +91,8 @@ impl Wiping {
     /// contact, for its displacement.
     ///
     /// # Errors
-    /// [`DemoGenError::Tilt`], [`DemoGenError::Deviation`], [`DemoGenError::TaskRate`], [`DemoGenError::NoTrajectory`], or [`DemoGenError::InTrajectory`] with what
-    /// [`RollOut::record`] says.
+    /// [`DemoGenError::Tilt`], [`DemoGenError::Deviation`], [`DemoGenError::TaskRate`], [`DemoGenError::NoTrajectory`], or
+    /// [`DemoGenError::InTrajectory`] with what [`RollOut::record`] says.
     pub fn record<R: Rng + ?Sized>(&self, rng: &mut R) -> Result<Vec<Recording>, DemoGenError> {
         self.check()?;
         record_each(self.n_trajectories, || self.record_one(rng))

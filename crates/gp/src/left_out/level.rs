@@ -73,17 +73,12 @@ impl Level {
 
     /// The best κ, given Σ a_b K_b and σ² found.
     pub(crate) fn best(covariance: &DMatrix<f64>, found: f64, conditions: &Conditions<'_>) -> Option<Self> {
-        let mut inverse = DMatrix::zeros(covariance.nrows(), covariance.nrows());
-        let mut kappas = kappas();
+        let zeros = || DMatrix::zeros(covariance.nrows(), covariance.ncols());
+        let (mut inverse, mut kappas) = (zeros(), kappas());
         let next = |worse: Option<Level>| {
-            let matrix = match worse.map(|level| level.factor.into_matrix()) {
-                // Many rows take less time to copy than to allocate.
-                Some(mut matrix) => {
-                    matrix.copy_from(covariance);
-                    matrix
-                }
-                None => covariance.clone(),
-            };
+            // Matrices of many rows take less time to fill than to allocate.
+            let mut matrix = worse.map_or_else(zeros, |level| level.factor.into_matrix());
+            matrix.copy_from(covariance);
             Level::reusing((matrix, &mut inverse), found, kappas.next()?, conditions)
         };
         climb(next, |level| &level.left_out)

@@ -41,8 +41,8 @@ thread_local! {
 
 impl Lwpr {
     /// Prediction at `x` by the current model, without a snapshot. Returns whether every output has support; an output
-    /// without support keeps its value, gradient and confidence, and only its `max_activation` is written. Fields whose activation is at most `cutoff` do not take part. Allocates nothing
-    /// once a thread has asked a model of that size.
+    /// without support keeps its value, gradient and confidence, and only its `max_activation` is written. Fields whose
+    /// activation is at most `cutoff` do not take part. Allocates nothing once a thread has asked a model of that size.
     ///
     /// # Panics
     /// If `prediction` was made for other numbers of inputs and outputs.

@@ -100,14 +100,13 @@ pub fn fit_with(
     decisions.extend(links.decision(&readings));
     decisions.extend(digests_decision(prepared, digests, &readings));
     decisions.push(learner_decision(options, &readings));
-    // Of the Gaussian processes; the aligned potentials learn from all samples.
-    decisions.extend(rows_decision(&readings).filter(|_| options.learner != LearnerChoice::PolicyAlign));
-    let aligned = match options.learner {
-        LearnerChoice::PolicyAlign => {
-            let reference = readings.actions(rows.states().as_view());
-            Some(aligning::fit(prepared, &rows, &reference, options, progress)?)
-        }
-        _ => None,
+    let aligned = if options.learner == LearnerChoice::PolicyAlign {
+        let reference = readings.actions(rows.states().as_view());
+        Some(aligning::fit(prepared, &rows, &reference, options, progress)?)
+    } else {
+        // The aligned potentials learn from all samples.
+        decisions.extend(rows_decision(&readings));
+        None
     };
     let mut numbers = numbers(prepared, options, &readings, aligned.as_ref(), &rows);
     numbers.episodes += digests.iter().map(|digest| digest.data.episodes).sum::<usize>();

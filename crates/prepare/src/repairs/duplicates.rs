@@ -7,11 +7,10 @@ use crate::notes::Notes;
 pub(crate) fn leave_out(episodes: &mut Vec<Episode>, notes: &mut Notes) {
     let firsts = duplicates(episodes.iter().map(|episode| &episode.positions));
     // The same path at another speed, towards another goal or under another constraint is another movement.
-    let same = |copy: usize, first: usize| {
-        let of = |episode: &Episode| (episode.times.clone(), episode.velocities.clone(), episode.context.clone());
-        of(&episodes[copy]) == of(&episodes[first]) && episodes[copy].constraint == episodes[first].constraint
+    let same = |a: &Episode, b: &Episode| {
+        (&a.times, &a.velocities, &a.context, &a.constraint) == (&b.times, &b.velocities, &b.context, &b.constraint)
     };
-    let firsts = firsts.into_iter().enumerate().map(|(copy, first)| first.filter(|&first| same(copy, first)));
+    let firsts = firsts.into_iter().zip(&*episodes).map(|(first, copy)| first.filter(|&k| same(&episodes[k], copy)));
     let firsts: Vec<Option<usize>> = firsts.collect();
     let copied = firsts.iter().flatten().count();
     if copied == 0 {

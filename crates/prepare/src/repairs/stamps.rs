@@ -1,4 +1,4 @@
-use motion::{Demonstrations, Episode, Times, Trajectory, Verdict, upper_median};
+use motion::{Demonstrations, Episode, Times, Verdict, upper_median};
 
 use crate::PrepareError;
 use crate::notes::{Notes, and_more};
@@ -61,10 +61,13 @@ pub(crate) fn decide(
     Ok(())
 }
 
+/// The median of the episodes' steps, in seconds; none if no episode has two samples.
+pub(crate) fn usual_step(episodes: &[Episode]) -> Option<f64> {
+    upper_median(episodes.iter().filter_map(|episode| episode.times.median_step()).collect())
+}
+
 fn decided(episodes: &[Episode], (uneven, worst): (usize, f64), notes: &mut Notes) {
-    let Some(usual) = upper_median(episodes.iter().filter_map(|episode| episode.times.median_step()).collect()) else {
-        return;
-    };
+    let Some(usual) = usual_step(episodes) else { return };
     let rate = if usual < 1.0 { format!(" ({} Hz)", short(1.0 / usual)) } else { String::new() };
     let value = format!("{} s{rate}", short(usual));
     let why = match uneven {
@@ -80,8 +83,10 @@ fn decided(episodes: &[Episode], (uneven, worst): (usize, f64), notes: &mut Note
 
 /// A time step that is hardly one in seconds.
 pub(crate) fn doubt(demonstrations: &Demonstrations, notes: &mut Notes) {
-    let steps = demonstrations.trajectories().iter().map(Trajectory::time_step).collect();
-    let Some(usual) = upper_median(steps).filter(|&usual| usual > SLOW) else { return };
+    let usual = demonstrations.time_step();
+    if usual <= SLOW {
+        return;
+    }
     let movement = &demonstrations.trajectories()[0];
     notes.found(
         Verdict::Doubtful,

@@ -1,4 +1,4 @@
-use motion::{Channel, Episode, Verdict, upper_median};
+use motion::{Channel, Episode, Verdict};
 use nalgebra::DVector;
 
 use crate::notes::Notes;
@@ -8,7 +8,7 @@ use crate::repairs::agreement::Agreement;
 use crate::repairs::lag;
 use crate::samples::noise::Noise;
 
-use crate::repairs::stamps::SLOW;
+use crate::repairs::stamps::{SLOW, usual_step};
 
 /// Velocities agree with the steps up to this factor.
 const AGREE: f64 = 1.25;
@@ -172,9 +172,7 @@ fn made_of_positions(episodes: &[Episode]) -> bool {
 /// Converts velocities in other units than the steps to those of positions and stamps, and reports it.
 fn rescale(episodes: &mut [Episode], fit: &Steps, channels: &[Channel], notes: &mut Notes) {
     let (low, high) = (fit.factors.min(), fit.factors.max());
-    let steps =
-        |episode: &Episode| episode.times.seconds(0, episode.n_samples() - 1) / (episode.n_samples() - 1) as f64;
-    let step = upper_median(episodes.iter().map(steps).collect()).unwrap_or(1.0);
+    let step = usual_step(episodes).unwrap_or(1.0);
     if step > SLOW && fit.factors.iter().all(|factor| (1.0 / AGREE..AGREE).contains(&(factor * 1000.0))) {
         for episode in episodes.iter_mut() {
             episode.times = episode.times.divided_by(1000.0);

@@ -1,6 +1,6 @@
 use std::borrow::Cow;
 
-use motion::{Demonstrations, Trajectory, Verdict, upper_median};
+use motion::{Demonstrations, Verdict};
 use nalgebra::{DVector, DVectorView};
 use serde::{Deserialize, Serialize};
 use smoothing::{PositionNoise, VelocityNoise};
@@ -111,8 +111,8 @@ pub(crate) fn of_velocities(demonstrations: &Demonstrations, of: impl Fn(DVector
 pub(crate) fn velocity_variance(demonstrations: &Demonstrations, noise: &Noise) -> f64 {
     let dim = demonstrations.dim() as f64;
     let positions = noise.positions.iter().flatten().map(|deviation| deviation.powi(2)).sum::<f64>() / dim;
-    let step = upper_median(demonstrations.trajectories().iter().map(Trajectory::time_step).collect()).unwrap_or(1.0);
-    VelocityNoise::of(demonstrations).map_or(2.0 * positions / step.powi(2), |noise| noise.variance / dim)
+    VelocityNoise::of(demonstrations)
+        .map_or(2.0 * positions / demonstrations.time_step().powi(2), |noise| noise.variance / dim)
 }
 
 /// The kind of recording where the user requested a smoothing.
