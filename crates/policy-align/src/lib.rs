@@ -82,7 +82,6 @@ mod named;
 mod robot_frames;
 mod roll_out;
 mod serving;
-mod single_precision;
 mod stored;
 mod trust;
 
@@ -109,7 +108,6 @@ pub use prepare::{
 pub use robot_frames::RobotFrames;
 pub use roll_out::{ConstraintFileError, ConstraintSet, JointLimits, Path, RollOut, RollOutError, Stop, spread_starts};
 pub use serving::{ControllerError, Halt, Quantity, VelocityCommand, VelocityController};
-pub use single_precision::single_precision_error;
 pub use stored::{ModelError, checksum_of, sha256, sha256_of_file, write_together, write_whole};
 pub use trust::{AlignedNumbers, Trust, TrustNumbers};
 

@@ -12,7 +12,7 @@ use std::process::Command;
 use models::{direct, free, one_of_each, policy_align, slope, states, toy};
 use motion::{LearntPolicy as _, Policy as _};
 use nalgebra::DMatrix;
-use policy_align::{CSource, ExportError, Finding, Model, Precision, Verdict, single_precision_error};
+use policy_align::{CSource, ExportError, Finding, Model, Precision, Verdict};
 
 /// Reads states, writes action, potential and whether something was learnt, all as bits.
 const CALLER: &str = r#"
@@ -149,37 +149,6 @@ fn every_learner_acts_as_its_model() {
         compare(name, &rescaled(model), Precision::Double, 1e-12);
     }
     compare("direct, free", &direct(&free(12, 30)), Precision::Double, 1e-12);
-}
-
-/// Estimated without a compiler, within a factor of ten of what C does.
-#[test]
-fn the_price_of_single_precision_is_known() {
-    let states = states(400);
-    for (name, model) in one_of_each(&toy(12, 30)) {
-        let estimate = single_precision_error(&model).unwrap();
-        assert!(estimate < 2e-3, "{name}: {estimate:e}");
-        if compiler().is_none() {
-            continue;
-        }
-        let folder = tempfile::tempdir().unwrap();
-        let source = CSource { name: "act".to_owned(), precision: Precision::Single }.of(&model).unwrap();
-        let policy = model.policy();
-        let (mut off, mut power) = (0.0, 0.0);
-        for (answer, state) in answers(&source, "float", &states, folder.path()).iter().zip(states.column_iter()) {
-            let action = policy.action(state);
-            if answer.known {
-                off += (action[0] - answer.action[0]).powi(2) + (action[1] - answer.action[1]).powi(2);
-                power += action.norm_squared();
-            }
-        }
-        // What the direct GP knows of constrained movements is little.
-        if power == 0.0 && name == "direct" {
-            continue;
-        }
-        let ratio = (off / power).sqrt() / estimate;
-        eprintln!("{name}: estimate {estimate:e}, C times {ratio}");
-        assert!((0.1..10.0).contains(&ratio), "{name}: {ratio} times {estimate:e}");
-    }
 }
 
 #[test]

@@ -52,7 +52,7 @@ pub enum PrepareError {
     },
     /// A window that cannot smooth.
     #[error(
-        "--smooth: a window of {window} samples, {step} s apart, is not possible: give an odd number of at least 5, as in --smooth 9, or seconds, as in --smooth {}s", crate::numbers::short(9.0 * step)
+        "--smooth: a window of {window} samples, {step} s apart; an odd number of at least 5, as in --smooth 9, or seconds, as in --smooth {}s", crate::numbers::short(9.0 * step)
     )]
     Smoothing {
         /// Samples in it.
