@@ -1,12 +1,8 @@
 //! What cannot be aligned is refused with an error that says where and why; what looks odd but can, gives finite numbers.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
-
+use crate::literal::Literal;
 #[allow(dead_code, reason = "H is all that is compared")]
-mod literal;
-
 use align::{AlignError, Aligned, Bandwidth, DirectPolicyLearning, Integration, LwprRegressor, PolicyAlign, Warning};
-use literal::Literal;
 use lwpr::{LwprError, LwprParams};
 use motion::{Demonstrations, Policy, Potential, Trajectory};
 use nalgebra::{DMatrix, DVector};

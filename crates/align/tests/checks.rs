@@ -1,7 +1,5 @@
 //! What looks wrong about the demonstrations themselves is said, with the trajectory, and what does not is not.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
-
 use align::{Bandwidth, PolicyAlign, Warning};
 use demo_gen::{Redraw, ThreeLinkArm, ToyPotential, ToySystem, demonstrations};
 use motion::Demonstrations;

@@ -1,7 +1,5 @@
 //! Small alignments as another program found them; see `golden/README.md`.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
-
 use align::{Bandwidth, PolicyAlign};
 use motion::Demonstrations;
 use nalgebra::{DMatrix, DVector};

@@ -1,9 +1,6 @@
 //! What must not matter to the alignment, and what must scale with the data.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
-
-mod drawn;
-
+use crate::drawn;
 use align::{AlignError, Aligned, Bandwidth, Integration, PolicyAlign};
 use motion::{Demonstrations, Trajectory};
 use nalgebra::{DMatrix, DVector};

@@ -1,7 +1,5 @@
 //! From demonstrations to a policy, on the paper's toy system.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
-
 use align::{
     AlignError, Aligned, Bandwidth, DirectPolicyLearning, LwprRegressor, PolicyAlign, PotentialPolicyLearning,
     Regressor,

@@ -1,12 +1,8 @@
 //! The alignment, stage by stage, beside the paper's formulas.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
-
-mod drawn;
-mod literal;
-
+use crate::drawn;
+use crate::literal::Literal;
 use align::{Bandwidth, Integration, PolicyAlign};
-use literal::Literal;
 use motion::{Demonstrations, Trajectory};
 use nalgebra::{DMatrix, DVector};
 use proptest::collection::vec;

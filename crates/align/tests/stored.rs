@@ -1,7 +1,5 @@
 //! What was learnt is stored and read back: the same bits, for ever, and nothing that is damaged.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
-
 use align::{
     AlignError, Bandwidth, DirectPolicy, DirectPolicyLearning, Integration, Label, LwprRegressor, PolicyAlign,
     PotentialPolicy, PotentialPolicyLearning,

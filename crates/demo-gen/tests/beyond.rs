@@ -1,7 +1,5 @@
 //! Policies beyond the paper's: gradients by differences, formulas as they are printed, and who is constrained when.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
-
 use constraints::PfaffianConstraint;
 use demo_gen::beyond::{
     BeyondSystem, ConstraintKind, DriftingConstraint, Handwriting, LimitCycle, Planes, PolicyKind, Swirl, Wells,

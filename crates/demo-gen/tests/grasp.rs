@@ -1,7 +1,6 @@
 //! Grasping: what is drawn, that the wall is obeyed at every step, that truth and scene agree, and what is refused.
 
-mod robots;
-
+use crate::robots::upper_body;
 use constraints::PfaffianConstraint;
 use demo_gen::{DemoGenError, Grasp, GraspScene, RollOut};
 use kinematics::Workspace;
@@ -10,7 +9,6 @@ use nalgebra::{DVector, Point3, dvector};
 use proptest::prelude::*;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
-use robots::upper_body;
 
 fn rng(seed: u64) -> ChaCha8Rng {
     ChaCha8Rng::seed_from_u64(seed)

@@ -1,9 +1,8 @@
 //! The arm and the upper body: what is drawn, the constraint obeyed at every step, what is refused.
 
-mod robots;
-
 use std::f64::consts::PI;
 
+use crate::robots::{THREE_LINK, arm, upper_body};
 use constraints::{ConstraintError, PfaffianConstraint as _, PointConstraint};
 use demo_gen::{DemoGenError, HandInPlane, Recording, RollOut, Side, ThreeLinkArm, hand_jacobian, n_leaving_limits};
 use kinematics::{Chain, KinematicsError, RobotModel, Workspace};
@@ -11,7 +10,6 @@ use nalgebra::{DMatrix, DVector, DVectorView, Matrix3, Matrix3xX, SymmetricEigen
 use proptest::prelude::*;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
-use robots::{THREE_LINK, arm, upper_body};
 
 fn rng(seed: u64) -> ChaCha8Rng {
     ChaCha8Rng::seed_from_u64(seed)

@@ -1,7 +1,5 @@
 //! Constraints A u = b: movements keep to them, what is left is the policy's, and formulas are as they are printed.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
-
 use constraints::{LinearConstraint, PfaffianConstraint};
 use demo_gen::tasks::{Contact, CyclesWithTask, LinearTask, TaskConstraint, Wiping};
 use demo_gen::{DemoGenError, Recording, RollOut, with_velocity_noise};

@@ -1,14 +1,12 @@
 //! Start states of the upper body: where they are, how they spread, and what is refused.
 
-mod robots;
-
+use crate::robots::{UPPER_BODY, UPPER_BODY_SRDF, upper_body};
 use demo_gen::{DemoGenError, Side, UpperBody};
 use kinematics::{KinematicsError, Workspace};
 use nalgebra::DVector;
 use proptest::prelude::*;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
-use robots::{UPPER_BODY, UPPER_BODY_SRDF, upper_body};
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]

@@ -1,9 +1,8 @@
 //! Models of all rows through inducing rows (S34)–(S37): what more data bring.
 
-mod drawn;
-
-use drawn::many::{Set, set, sinusoid, wells};
-use drawn::nupe;
+use crate::drawn;
+use crate::drawn::many::{Set, set, sinusoid, wells};
+use crate::drawn::nupe;
 use gp::{AutoGp, SlopeFit, SlopeGp};
 use motion::{LearntPolicy, Policy as _};
 use nalgebra::{DMatrix, DVector};

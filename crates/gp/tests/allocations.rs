@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used)] // A panic is how a test fails.
 
+#[allow(dead_code, reason = "made for more than this")]
 mod drawn;
 
 use drawn::{descent, rng, rows, vector};

@@ -1,20 +1,15 @@
 //! Errors under pushes, in noise and in mixed units beside the bounds set for them: a table of medians and worst cases.
 
-#![allow(clippy::unwrap_used)] // A panic is how a test fails.
 #![allow(clippy::print_stdout, reason = "it prints what it measures")]
 
-mod drawn;
-mod fresh;
-mod systems;
-
+use crate::fresh::{DataSet, Disturbed, beyond, judge};
+use crate::systems::{ANGLES, CHAIN, HIMMELBLAU, System, UNEVEN_WELLS, WELLS, error};
 use demo_gen::beyond::PolicyKind;
-use fresh::{DataSet, Disturbed, beyond, judge};
 use gp::{AutoFit, AutoGp, DirectGp, Family, FrontEnd, PushTest, Rows, SlopeGp};
 use motion::{Demonstrations, Policy, Trajectory, scaled};
 use nalgebra::{DVector, DVectorView, DVectorViewMut};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
-use systems::{ANGLES, CHAIN, HIMMELBLAU, System, UNEVEN_WELLS, WELLS, error};
 
 const SEEDS: std::ops::RangeInclusive<u64> = 1..=5;
 /// Rows that are learnt from.

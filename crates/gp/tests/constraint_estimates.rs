@@ -1,17 +1,14 @@
 //! Constraints that are found once the policy is known.
 
-#![allow(clippy::unwrap_used)] // A panic is how a test fails.
 #![allow(clippy::print_stdout, reason = "the slow test prints what it measures")]
 
-mod drawn;
-mod systems;
-
+use crate::systems;
+use crate::systems::{ANGLES, HIMMELBLAU, Switched, System, WELLS};
 use gp::{Acting, AutoFit, ConstraintEstimates, FrontEnd, GpError, Rows, StretchEstimate, TaskSpace};
 use motion::{LearntPolicy, Policy, SampleIndex};
 use nalgebra::{DMatrix, DVector, DVectorView, DVectorViewMut};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use systems::{ANGLES, HIMMELBLAU, Switched, System, WELLS};
 
 /// How many true stretches there are, and how many of them were found.
 #[derive(Debug, Default)]

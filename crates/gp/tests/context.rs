@@ -1,12 +1,8 @@
 //! Movements towards goals that differ: the goal is a context, and what is learnt holds at goals that were not shown.
 
-#![allow(clippy::unwrap_used)] // A panic is how a test fails.
-
-mod drawn;
-mod goals;
-
-use drawn::{matrix, rng, vector};
-use goals::{Attraction, Goals};
+use crate::drawn;
+use crate::drawn::{matrix, rng, vector};
+use crate::goals::{Attraction, Goals};
 use gp::{AutoFit, AutoGp, Block, FrontEnd, GpError, Hypothesis, Shape, SlopeData, SlopeGp};
 use motion::{Demonstrations, LearntPolicy as _, Policy as _, Potential as _, Trajectory};
 use nalgebra::{DMatrix, DVector};

@@ -1,10 +1,8 @@
 //! Whole fits: what they must not depend on, what they find exactly, and what they refuse.
 
-mod drawn;
-
+use crate::drawn::{descent, matrix, rng, rows, vector};
 use demo_gen::beyond::{BeyondSystem, ConstraintKind, PolicyKind as Shown};
 use demo_gen::demonstrations;
-use drawn::{descent, matrix, rng, rows, vector};
 use gp::{AutoFit, AutoGp, CurlTest, DirectFit, DirectGp, Family, GpError, ModelKind, Rows, SlopeFit, SlopeGp};
 use motion::{LearntPolicy, Policy, SampleIndex};
 use nalgebra::{DMatrix, DVector};

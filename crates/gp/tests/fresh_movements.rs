@@ -2,11 +2,9 @@
 
 #![allow(clippy::print_stdout, reason = "the slow tests print what they measure")]
 
-mod drawn;
-mod fresh;
-
+use crate::drawn;
+use crate::fresh::{DataSet, Disturbed, Judged, SYSTEMS, System, beyond, data_set, judge};
 use demo_gen::beyond::PolicyKind;
-use fresh::{DataSet, Disturbed, Judged, SYSTEMS, System, beyond, data_set, judge};
 use gp::{AutoGp, CurlTest, DirectGp, Family, FrontEnd, Rows, SlopeFit, SlopeGp};
 use motion::{Demonstrations, Policy as _, Trajectory};
 

@@ -1,9 +1,7 @@
 //! What must change nothing: the truth behind the recordings, the order of rows, and the coordinates they are given in.
 
-mod drawn;
-
+use crate::drawn::{descent, matrix, rng, rows, vector};
 use demo_gen::{Recording, Redraw, ToyPotential, ToySystem, demonstrations};
-use drawn::{descent, matrix, rng, rows, vector};
 use gp::{
     AutoGp, DirectData, DirectGp, DirectLearner, Family, FrontEnd, Rows, SlopeData, SlopeGp, SlopeLearner, Trend,
 };

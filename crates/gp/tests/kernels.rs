@@ -1,8 +1,6 @@
 //! Covariances of slopes are second differences of those of potentials; fast matrices are the literal ones.
 
-mod drawn;
-
-use drawn::{matrix, rng, vector};
+use crate::drawn::{matrix, rng, vector};
 use gp::{Block, Shape};
 use nalgebra::DVector;
 use proptest::prelude::*;

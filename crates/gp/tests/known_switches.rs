@@ -1,15 +1,11 @@
 //! Recordings that name the constraint at every sample: switches need not be looked for.
 
-#![allow(clippy::unwrap_used)] // A panic is how a test fails.
 #![allow(clippy::print_stdout, reason = "the slow test prints what it measures")]
 
-mod drawn;
-mod systems;
-
+use crate::systems::{ANGLES, HIMMELBLAU, Switched, System, WELLS, error, learnt};
 use gp::{Acting, ConstraintEstimates, FrontEnd, GpError, Rows, TaskSpace};
 use motion::{Demonstrations, Labels};
 use proptest::prelude::*;
-use systems::{ANGLES, HIMMELBLAU, Switched, System, WELLS, error, learnt};
 
 /// The movements, each with the names of its two constraints.
 fn named(movements: &Demonstrations, truth: &[Switched], names: [&str; 2]) -> Demonstrations {

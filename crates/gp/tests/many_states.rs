@@ -1,10 +1,6 @@
 //! Predictions are the sums that they stand for, and the same bits one by one, at many states and on any number of threads.
 
-#![allow(clippy::unwrap_used)] // A panic is how a test fails.
-
-mod drawn;
-
-use drawn::{descent, matrix, rng, rows, vector};
+use crate::drawn::{descent, matrix, rng, rows, vector};
 use gp::{
     Block, CurlTest, DirectBlock, DirectFit, DirectFormula, DirectGp, Fall, Family, Rows, SlopeFit, SlopeFormula,
     SlopeGp, Term,

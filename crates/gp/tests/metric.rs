@@ -1,7 +1,5 @@
 //! Constraints at right angles in a metric that depends on the state, as where a robot's inertia weighs its joints.
 
-#![allow(clippy::unwrap_used)] // A panic is how a test fails.
-
 use gp::{GpError, Rows, SlopeGp};
 use motion::{Policy, SampleIndex};
 use nalgebra::{DMatrix, DVector, Matrix2, Vector2};

@@ -1,8 +1,6 @@
 //! The model with everything given: means, evidence and left-out trajectories against their definitions.
 
-mod drawn;
-
-use drawn::{descent, rng, rows, vector};
+use crate::drawn::{descent, rng, rows, vector};
 use gp::{DirectData, Evidence, Family, Rows, SlopeData, Trend};
 use motion::{Policy as _, Potential as _};
 use nalgebra::{DMatrix, DVector};

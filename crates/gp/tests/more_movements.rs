@@ -2,10 +2,9 @@
 
 #![allow(clippy::print_stdout, reason = "the slow test prints what it measures")]
 
-mod drawn;
-
-use drawn::many::{Gradient, new_movements, set, sinusoid, wells};
-use drawn::nupe;
+use crate::drawn;
+use crate::drawn::many::{Gradient, new_movements, set, sinusoid, wells};
+use crate::drawn::nupe;
 use gp::{AutoGp, SlopeFit, SlopeGp};
 use motion::{LearntPolicy as _, Policy as _};
 use nalgebra::{DMatrix, DVector};

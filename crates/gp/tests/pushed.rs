@@ -1,17 +1,13 @@
 //! Constraints that push, A u = b with b ≠ 0: policies are found from the directions in which velocities differ.
 
-#![allow(clippy::unwrap_used)] // A panic is how a test fails.
-
-mod drawn;
-mod systems;
-
+use crate::systems;
+use crate::systems::{ANGLES, HIMMELBLAU, System, WELLS, error};
 use demo_gen::tasks::CyclesWithTask;
 use demo_gen::{demonstrations, with_velocity_noise};
 use gp::{AutoFit, FrontEnd, Hypothesis};
 use motion::Policy;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
-use systems::{ANGLES, HIMMELBLAU, System, WELLS, error};
 
 fn learnt(system: &System, push: f64, noise: f64, seed: u64) -> AutoFit {
     systems::learnt(&FrontEnd::Velocities.rows(&system.movements(push, noise, seed)).unwrap(), seed)

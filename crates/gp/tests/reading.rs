@@ -1,10 +1,8 @@
 //! Near passes, and the rule by which a reading is chosen.
 
-mod drawn;
-
+use crate::drawn::{descent, matrix, rng, rows};
 use demo_gen::beyond::{BeyondSystem, ConstraintKind, PolicyKind};
 use demo_gen::{demonstrations, with_velocity_noise};
-use drawn::{descent, matrix, rng, rows};
 use gp::{
     AutoFit, AutoGp, DirectGp, FrontEnd, Grouping, Hypothesis, LeastSeen, NearPasses, PushTest, ReadingNumbers, Rows,
     SlopeGp,

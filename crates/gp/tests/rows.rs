@@ -1,7 +1,5 @@
 //! What rows say of themselves.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
-
 use gp::{FrontEnd, Rows};
 use motion::{Demonstrations, SampleIndex, Trajectory};
 use nalgebra::DMatrix;

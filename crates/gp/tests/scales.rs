@@ -1,16 +1,11 @@
 //! The unit of each axis is learnt from constraints, which act at right angles in the right one only.
 
-#![allow(clippy::unwrap_used)] // A panic is how a test fails.
-
-mod drawn;
-mod systems;
-
+use crate::systems::{ANGLES, HIMMELBLAU, System, WELLS};
 use gp::{Family, FrontEnd, LearntScales, PushTest, Rows, SlopeGp};
 use motion::scaled;
 use nalgebra::DVector;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
-use systems::{ANGLES, HIMMELBLAU, System, WELLS};
 
 /// What is learnt where axis 1 was recorded in a unit so many times too small.
 fn learnt(system: &System, factor: f64, noise: f64) -> Option<LearntScales> {

@@ -1,7 +1,6 @@
 //! Stored fits: a file of version 1 is read for ever, damaged ones are refused.
 
-mod drawn;
-
+use crate::drawn;
 use gp::{AutoFit, MOST_ROWS};
 use motion::{LearntPolicy as _, Policy as _};
 use nalgebra::DVector;
@@ -109,11 +108,11 @@ fn rows_without_a_factor_leave_the_prior() {
     assert_eq!(fit.direct().support(at.as_view()), 0.0);
 }
 
-/// Writes the golden file anew: `cargo test --package gp --test stored -- --ignored`. Only for a new version.
+/// Writes the golden file anew: `cargo test -p policy-align-gp --test all stored -- --ignored`. Only for a new version.
 #[test]
 #[ignore = "writes the golden file"]
 fn write_golden() {
-    use drawn::{descent, rng, rows, vector};
+    use crate::drawn::{descent, rng, rows, vector};
     let learner = gp::AutoGp::default();
     let fit = learner.fit(&rows(2, (6, 8), descent, &mut rng(20)), &mut rng(21)).expect("a fit");
     let numbers = |vector: DVector<f64>| vector.data.as_vec().clone();

@@ -1,7 +1,5 @@
 //! Policies learnt from constraints that are constant where a robot's hand is: (S40), (S41).
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
-
 use demo_gen::tasks::{Contact, Wiping};
 use demo_gen::{Recording, demonstrations, with_velocity_noise};
 use gp::{AutoFit, AutoGp, DirectGp, FrontEnd, GpError, Hypothesis, PushTest, Rows, SlopeGp, TaskSpace};

@@ -1,12 +1,8 @@
 //! A robot's tree, taken apart and put together again by hand.
-#![allow(clippy::unwrap_used, reason = "a robot that does not load fails the test")]
-
-mod random_tree;
-
+use crate::random_tree::tree;
 use kinematics::{Attachment, JointMotion, MotionKind, RobotModel, Workspace};
 use nalgebra::{DVector, IsometryMatrix3, Rotation3, Translation3, Vector3};
 use proptest::prelude::*;
-use random_tree::tree;
 
 /// What the joint does at a configuration.
 fn motion(joint: &JointMotion, q: &DVector<f64>) -> IsometryMatrix3<f64> {

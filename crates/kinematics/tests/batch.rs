@@ -1,12 +1,8 @@
 //! Several configurations at once give the bits of one after the other.
-#![allow(clippy::unwrap_used, reason = "a robot that does not load fails the test")]
-
-mod random_tree;
-
+use crate::random_tree::{RandomTree, tree};
 use kinematics::{KinematicsError, RobotModel, Workspace};
 use nalgebra::{DMatrix, IsometryMatrix3, Matrix6xX};
 use proptest::prelude::*;
-use random_tree::{RandomTree, tree};
 
 /// A tree and configurations of it in columns: none, fewer than there are lanes, more, or multiples of them.
 fn configurations() -> impl Strategy<Value = (RandomTree, DMatrix<f64>)> {

@@ -1,11 +1,7 @@
 //! What a URDF says about collision shapes, what is asked of meshes, and what faults in either do.
-#![allow(clippy::unwrap_used, reason = "a robot that does not load fails the test")]
-
-mod two_shapes;
-
+use crate::two_shapes::{resolver, two_shapes};
 use kinematics::{Element, Geometry, KinematicsError, SelfCollision, UrdfProblem};
 use nalgebra::Vector3;
-use two_shapes::{resolver, two_shapes};
 
 #[test]
 fn meshes_are_asked_for_only_by_collision() {

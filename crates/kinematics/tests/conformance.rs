@@ -1,8 +1,6 @@
 //! Reference cases of real robots, computed by another library. The files are not part of this project; the folder
 //! that holds them (`kinematics/*.json` with the URDFs beside) is named by `CONFORMANCE_VECTORS`.
 
-#![allow(clippy::unwrap_used, reason = "a reference file that cannot be read fails the test")]
-
 use std::{
     fs,
     path::{Path, PathBuf},

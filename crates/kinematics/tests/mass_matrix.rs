@@ -1,6 +1,4 @@
 //! The mass matrix: against the kinetic energy of moving links, a formula, and what files say about masses.
-#![allow(clippy::unwrap_used, reason = "a robot that does not load fails the test")]
-
 use kinematics::{Element, KinematicsError, RobotModel, UrdfProblem, Workspace};
 use nalgebra::{DMatrix, DVector, IsometryMatrix3, Matrix3, Vector3};
 use proptest::prelude::*;

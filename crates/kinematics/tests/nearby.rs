@@ -1,13 +1,9 @@
 //! Links near each other: distances that go on below zero, and which way apart is.
-#![allow(clippy::unwrap_used, reason = "a robot that does not load fails the test")]
-
-mod two_shapes;
-
+use crate::two_shapes::{resolver, two_shapes};
 use kinematics::{LinkId, Nearby, RobotModel, SelfCollision, Workspace};
 use nalgebra::{DVector, Vector3, dvector};
 use proptest::prelude::*;
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
-use two_shapes::{resolver, two_shapes};
 
 /// What the collision library's distances are good for, metres.
 const EXACT: f64 = 5e-5;

@@ -1,13 +1,9 @@
 //! Questions about a robot: bad ones get a typed error, good ones follow the limits.
-#![allow(clippy::unwrap_used, reason = "a robot that does not load fails the test")]
-
-mod random_tree;
-
+use crate::random_tree::tree;
 use kinematics::{JointKind, KinematicsError, RobotModel, Workspace};
 use nalgebra::{DVector, Matrix3xX, Matrix6xX};
 use proptest::prelude::*;
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
-use random_tree::tree;
 
 const UPPER_BODY: &str = include_str!("../../../robots/asimo_upper_body.urdf");
 

@@ -1,12 +1,8 @@
 //! Identities that hold for every robot.
-#![allow(clippy::unwrap_used, reason = "a robot that does not load fails the test")]
-
-mod random_tree;
-
+use crate::random_tree::{RandomTree, tree};
 use kinematics::{LinkId, RobotModel, Workspace};
 use nalgebra::{DVector, Matrix3xX, Matrix6xX, Rotation3, Vector3, Vector6};
 use proptest::prelude::*;
-use random_tree::{RandomTree, tree};
 
 /// A tree, a configuration and a velocity of its coordinates (the first n of them), and a link of it.
 fn motion() -> impl Strategy<Value = (RandomTree, Vec<f64>, Vec<f64>, usize)> {

@@ -1,6 +1,4 @@
 //! The damped resolved-rate step against its definition.
-#![allow(clippy::unwrap_used, reason = "a step that fails fails the test")]
-
 use kinematics::{KinematicsError, ResolvedRate, RobotModel, Workspace};
 use nalgebra::{DMatrix, DVector, Matrix3xX};
 use proptest::prelude::*;

@@ -1,6 +1,4 @@
 //! The robots of this project are what their README says.
-#![allow(clippy::unwrap_used, reason = "a robot that does not load fails the test")]
-
 use kinematics::{Geometry, JointKind, RobotModel, SelfCollision, Workspace};
 use nalgebra::{DVector, Matrix3xX, Point3};
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};

@@ -1,11 +1,7 @@
 //! Self-collision: distances of known places, and which pairs count.
-#![allow(clippy::unwrap_used, reason = "a robot that does not load fails the test")]
-
-mod two_shapes;
-
+use crate::two_shapes::{resolver, two_shapes};
 use kinematics::{Element, KinematicsError, RobotModel, SelfCollision, UrdfProblem, Workspace};
 use nalgebra::DVector;
-use two_shapes::{resolver, two_shapes};
 
 #[test]
 fn every_pair_of_shapes_at_a_known_distance() {

@@ -1,13 +1,9 @@
 //! Texts that are small and slow to read, and finite numbers that overflow on the way: each is read or refused at once.
-#![allow(clippy::unwrap_used, reason = "a robot that does not load fails the test")]
-
-mod urdf_text;
-
+use crate::urdf_text::{LIMIT, joint, robot, single};
 use cpu_time::ThreadTime;
 use kinematics::{Element, KinematicsError, MeshShape, RobotModel, SelfCollision, UrdfProblem, Workspace};
 use nalgebra::{DVector, Matrix6xX, Point3};
 use proptest::prelude::*;
-use urdf_text::{LIMIT, joint, robot, single};
 
 fn refused(text: &str) -> (Element, UrdfProblem) {
     match RobotModel::from_urdf(text) {

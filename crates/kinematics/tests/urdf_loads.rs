@@ -1,13 +1,9 @@
 //! What is odd in URDF files and must load all the same, one row each, with the motion it must give.
-#![allow(clippy::unwrap_used, reason = "a robot that does not load fails the test")]
-
-mod urdf_text;
-
 use std::f64::consts::FRAC_PI_2;
 
+use crate::urdf_text::{LIMIT, ORIGIN, joint, robot, robot_of_version, single};
 use kinematics::{Element, JointKind, RobotModel, UrdfWarning, Workspace};
 use nalgebra::{DVector, IsometryMatrix3, Rotation3, Translation3, Vector3};
-use urdf_text::{LIMIT, ORIGIN, joint, robot, robot_of_version, single};
 
 /// The pose of a link, all coordinates at `q`.
 fn pose(robot: &RobotModel, link: &str, q: f64) -> IsometryMatrix3<f64> {

@@ -1,11 +1,7 @@
 //! Mimic joints in every order and of every kind, and those that follow nothing.
-#![allow(clippy::unwrap_used, reason = "a robot that does not load fails the test")]
-
-mod urdf_text;
-
+use crate::urdf_text::{LIMIT, double, joint, robot};
 use kinematics::{Element, KinematicsError, RobotModel, UrdfProblem, Workspace};
 use nalgebra::{DVector, Matrix6xX, Rotation3, Vector3};
-use urdf_text::{LIMIT, double, joint, robot};
 
 /// A revolute joint about z; `mimic` is what stands in its `<mimic>`, if anything.
 fn turning(name: &str, parent: &str, child: &str, mimic: &str) -> String {

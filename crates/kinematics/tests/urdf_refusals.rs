@@ -1,11 +1,7 @@
 //! What URDF forbids, one row each: the error with the link or joint it must name.
-#![allow(clippy::unwrap_used, reason = "a robot that loads where it must not fails the test")]
-
-mod urdf_text;
-
+use crate::urdf_text::{LIMIT, joint, robot, robot_of_version, single};
 use Element::{Joint, Link, Robot, UnnamedLink};
 use kinematics::{Element, KinematicsError, RobotModel, UrdfProblem};
-use urdf_text::{LIMIT, joint, robot, robot_of_version, single};
 
 #[test]
 #[allow(clippy::too_many_lines, reason = "one table")]

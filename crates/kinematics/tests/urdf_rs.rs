@@ -1,14 +1,9 @@
 //! Robots that the crate urdf-rs has read: the same robots, and the same refusals, as from the text itself.
-#![allow(clippy::unwrap_used, reason = "a robot that does not load fails the test")]
-
-mod random_tree;
-mod urdf_text;
-
+use crate::random_tree::tree;
+use crate::urdf_text::{LIMIT, double, joint, robot, robot_of_version, single};
 use kinematics::{Element, KinematicsError, RobotModel, UrdfProblem};
 use proptest::prelude::*;
-use random_tree::tree;
 use urdf_rs::{JointLimit, JointType};
-use urdf_text::{LIMIT, double, joint, robot, robot_of_version, single};
 
 fn through_urdf_rs(text: &str) -> Result<RobotModel, KinematicsError> {
     RobotModel::try_from(&urdf_rs::read_from_string(text).unwrap())

@@ -1,7 +1,5 @@
 //! What is refused, and how.
 
-#![allow(clippy::unwrap_used)] // A panic is how a test fails.
-
 use lwpr::{Lwpr, LwprError, LwprParams, Metric, MetricAdaptation, Side};
 use nalgebra::{DMatrix, DVector, dmatrix, dvector};
 

@@ -1,12 +1,8 @@
 //! Gradient and Hessian of the prediction against central differences.
 
-#![allow(clippy::unwrap_used)] // A panic is how a test fails.
-
-mod support;
-
+use crate::support::case;
 use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
-use support::case;
 
 const STEP: f64 = 1e-5;
 

@@ -1,7 +1,5 @@
 //! Agreement with the reference traces in `golden/` (see the README there).
 
-#![allow(clippy::unwrap_used)] // A panic is how a test fails.
-
 use std::path::Path;
 
 use lwpr::{Kernel, LwprParams, Metric, MetricAdaptation};

@@ -1,14 +1,10 @@
 //! The one sweep over all fields beside the formulas read literally, and the model as it stands beside its snapshot.
 
-#![allow(clippy::unwrap_used)] // A panic is how a test fails.
-
-mod support;
-
+use crate::support::case;
 use lwpr::{Kernel, Prediction, Predictor};
 use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
 use serde_json::Value;
-use support::case;
 
 fn vector(value: &Value) -> DVector<f64> {
     let numbers: Vec<f64> = value.as_array().unwrap().iter().map(|number| number.as_f64().unwrap()).collect();

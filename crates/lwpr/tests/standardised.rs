@@ -1,15 +1,11 @@
 //! Outputs that are centred and divided by their spread.
 
-#![allow(clippy::unwrap_used)] // A panic is how a test fails.
-
-mod support;
-
+use crate::support::{Case, case};
 use lwpr::{LwprError, LwprParams, Side, StandardisedModel, Training};
 use nalgebra::{DMatrix, DVector, dmatrix, dvector};
 use proptest::prelude::*;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
-use support::{Case, case};
 
 fn training(case: &Case) -> Training {
     let params = LwprParams { norm_out: None, ..case.params.clone() };

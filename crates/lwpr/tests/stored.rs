@@ -1,14 +1,10 @@
 //! Stored models and predictors: what is refused, and that whatever was trained can be read again.
 
-#![allow(clippy::unwrap_used)] // A panic is how a test fails.
-
-mod support;
-
+use crate::support::case;
 use lwpr::{Kernel, Lwpr, LwprParams, Metric, MetricAdaptation, Predictor};
 use nalgebra::DMatrix;
 use proptest::prelude::*;
 use serde_json::{Value, json};
-use support::case;
 
 /// A model of a few fields.
 fn trained(metric: Metric) -> Lwpr {

@@ -1,15 +1,11 @@
 //! Batch = online, storing, threads, units, order of outputs.
 
-#![allow(clippy::unwrap_used)] // A panic is how a test fails.
-
-mod support;
-
+use crate::support::{Case, case};
 use lwpr::{Lwpr, Metric, Pruning};
 use nalgebra::DMatrix;
 use proptest::prelude::*;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
-use support::{Case, case};
 
 /// The whole state; equal texts are equal bits.
 fn state(model: &Lwpr) -> String {

@@ -1,7 +1,5 @@
 //! What cannot be smoothed is refused, case by case.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
-
 use motion::{Demonstrations, Trajectory};
 use nalgebra::{DMatrix, DVector};
 use smoothing::{AxisScale, Fusion, NoiseVariance, PositionNoise, SavitzkyGolay, Smoother, SmoothingError, StepRule};

@@ -1,7 +1,5 @@
 //! Fusion beside a dense least-squares solution, and what it must find by itself.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
-
 use motion::{Demonstrations, Trajectory};
 use nalgebra::{DMatrix, DVector};
 use proptest::collection::vec;

@@ -1,7 +1,5 @@
 //! Movements as another program smoothed and fused them; see `golden/README.md`.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
-
 use motion::{Demonstrations, Trajectory};
 use nalgebra::{DMatrix, DVector};
 use serde_json::Value;

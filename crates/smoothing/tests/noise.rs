@@ -1,7 +1,5 @@
 //! Noise of positions by third differences.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
-
 use motion::{Demonstrations, Trajectory};
 use nalgebra::{DMatrix, DVector};
 use proptest::collection::vec;

@@ -1,9 +1,6 @@
 //! The smoother beside its literal reading, and what must not change it.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
-
-mod literal;
-
+use crate::literal;
 use motion::{Demonstrations, Trajectory};
 use nalgebra::{DMatrix, DVector};
 use proptest::collection::vec;

@@ -1,7 +1,5 @@
 //! The same bits at any number of threads.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
-
 use motion::{Demonstrations, Trajectory};
 use nalgebra::DMatrix;
 use rand::SeedableRng;

@@ -1,6 +1,4 @@
 //! The robots of the paper's experiments, from the project's own files.
-#![allow(dead_code, reason = "each test program uses some of them")]
-
 use demo_gen::{ThreeLinkArm, UpperBody};
 
 pub(crate) const UPPER_BODY: &str = include_str!("../../../../robots/asimo_upper_body.urdf");

@@ -1,6 +1,4 @@
 //! Movements under constraints that are drawn, with their policies.
-#![allow(dead_code, reason = "every test takes what it needs")]
-
 pub(crate) mod many;
 pub(crate) mod movement;
 

@@ -1,7 +1,5 @@
 //! Movements of a dozen potentials under random constraints that may press, and what is learnt of them on movements that
 //! were not shown.
-#![allow(dead_code, unused_imports, reason = "every test takes what it needs")]
-
 mod potentials;
 
 use demo_gen::beyond::{BeyondSystem, PolicyKind};

@@ -1,6 +1,4 @@
 //! Potentials to descend under constraints A u = b, new for each movement and once within it.
-#![allow(dead_code, reason = "every test takes what it needs")]
-
 use gp::{AutoFit, AutoGp, DirectGp, PushTest, Rows, SlopeGp};
 use motion::{Demonstrations, Policy, Trajectory};
 use nalgebra::{DMatrix, DVector};

@@ -1,7 +1,5 @@
 //! Random robots: trees with every kind of joint, oblique axes, any origins, and mimic chains, in any document order.
 
-#![allow(dead_code, reason = "each test file uses its part of this")]
-
 use std::fmt::Write;
 
 use nalgebra::{Isometry3, Translation3, Unit, UnitQuaternion, Vector3};

@@ -1,6 +1,4 @@
 //! Two shapes that slide past each other, and meshes for them.
-#![allow(clippy::unwrap_used, reason = "a robot that does not load fails the test")]
-
 use kinematics::{MeshShape, RobotModel};
 use nalgebra::Point3;
 

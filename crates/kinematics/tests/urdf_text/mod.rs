@@ -1,6 +1,4 @@
 //! URDF texts for the tests.
-#![allow(dead_code, reason = "each test file uses its part of this")]
-
 pub(crate) const LIMIT: &str = r#"<limit lower="-1" upper="2" effort="1" velocity="1"/>"#;
 pub(crate) const ORIGIN: &str = r#"<origin xyz="0.1 0 0.2" rpy="0 0 0"/>"#;
 

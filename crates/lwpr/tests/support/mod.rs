@@ -1,7 +1,5 @@
 //! Random models and data for the property tests.
 
-#![allow(dead_code, unreachable_pub)] // Each test file uses its part.
-
 use lwpr::{Kernel, Lwpr, LwprParams, Metric, MetricAdaptation, Pruning};
 use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;

@@ -1,0 +1,27 @@
+//! All tests but those of the modules themselves, in one program: what they share is compiled once, and they run side by side.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
+
+mod all_rows;
+mod bounds_on_errors;
+mod constraint_estimates;
+mod context;
+mod drawn;
+mod fits;
+mod fresh;
+mod fresh_movements;
+mod goals;
+mod identities;
+mod kernels;
+mod known_switches;
+mod many_states;
+mod metric;
+mod model;
+mod more_movements;
+mod pushed;
+mod reading;
+mod rows;
+mod scales;
+mod stored;
+mod systems;
+mod task_spaces;
