@@ -2,7 +2,7 @@
 
 use gp::Rows;
 use motion::{Policy, SampleIndex};
-use nalgebra::DVector;
+use nalgebra::{DVector, Matrix2, Vector2};
 
 /// A sample that moves, u = r n, beside a policy there.
 pub(crate) struct Along {
@@ -24,6 +24,42 @@ pub(crate) fn along_movements(policy: &dyn Policy, rows: &Rows) -> Vec<Vec<Along
     let mut movements: Vec<Vec<Along>> = std::iter::repeat_with(Vec::new).take(count).collect();
     along(policy, rows).for_each(|sample| movements[sample.trajectory].push(sample));
     movements
+}
+
+/// Fewer movements determine no t.
+const FEW: usize = 5;
+
+/// The first coefficient of a regression of r − nᵀπ̂ on two factors.
+pub(crate) struct Regression {
+    /// The coefficient.
+    pub(crate) coefficient: f64,
+    /// The same over its standard error, with movements as units.
+    pub(crate) t: f64,
+    /// Share of Σ(r − nᵀπ̂)² that it explains beside the second factor.
+    pub(crate) share: f64,
+}
+
+impl Regression {
+    /// Least squares over all samples; none of too few movements, or where the factors depend on each other.
+    pub(crate) fn of(movements: &[Vec<Along>], factors: impl Fn(&Along) -> Vector2<f64>) -> Option<Self> {
+        let parts = |sample: &Along| (factors(sample), sample.speed - sample.wanted);
+        let (mut matrix, mut vector, mut squares) = (Matrix2::zeros(), Vector2::zeros(), 0.0);
+        for (factors, error) in movements.iter().flatten().map(parts) {
+            matrix += factors * factors.transpose();
+            vector += factors * error;
+            squares += error * error;
+        }
+        let inverse = matrix.try_inverse()?;
+        let fit = inverse * vector;
+        let influence = |samples: &Vec<Along>| {
+            let each = samples.iter().map(parts);
+            each.map(|(factors, error)| (inverse * factors).x * (error - factors.dot(&fit))).sum::<f64>()
+        };
+        let deviation = movements.iter().map(|samples| influence(samples).powi(2)).sum::<f64>().sqrt();
+        let counted = movements.iter().filter(|samples| !samples.is_empty()).count();
+        let share = fit.x * fit.x / inverse.m11 / squares;
+        (counted >= FEW).then_some(Regression { coefficient: fit.x, t: fit.x / deviation, share })
+    }
 }
 
 /// So many states are asked for together.

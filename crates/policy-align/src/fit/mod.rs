@@ -30,7 +30,7 @@ use crate::along::along_movements;
 use crate::channel_joints::joints_in_degrees;
 use crate::trust::{
     AlignedNumbers, CommonPlane, TrustNumbers, VerdictInput, common_surface, differing_goals, friction, judge, pushed,
-    share_leaving, share_unknown, slow_starts,
+    share_leaving, share_unknown, slow_starts, unexplained,
 };
 use crate::{DataSummary, Decision, Finding, FitError, Learnt, MadeBy, Model, PredictedSpeed, Prepared};
 use aligning::AlignedFit;
@@ -128,6 +128,11 @@ pub fn fit_with(
         findings.extend(differing_goals(&movements, prepared, &numbers));
         findings.extend(friction(&movements, rows.len()));
         findings.extend(slow_starts(&movements, &rows));
+        let pushed = takes_slope(&readings, options.learner) && readings.slope().report().push.is_some();
+        if rows.variances().is_none() && !pushed {
+            let predicted = numbers.held_out_error <= TrustNumbers::GOOD_HELD_OUT_ERROR;
+            findings.extend(unexplained(&movements, predicted));
+        }
     }
     findings.extend(robot.and_then(|robot| joints_in_degrees(&robot, &prepared.state)));
     findings.extend(plane(prepared, &numbers));

@@ -1,17 +1,15 @@
 //! Movements that are slower than the policy's component along them.
 
-use nalgebra::{Matrix2, Vector2};
+use nalgebra::Vector2;
 use prepare::numbers::percent;
 
-use crate::along::Along;
+use crate::along::{Along, Regression};
 use crate::{Finding, Verdict};
 
 /// Least missing speed, as a share of the root mean square, and its t over movements: friction has a t of 5 and more, all else below 3.5. The policy
 /// absorbs some of it, so that the share is too low.
 const MISSING: f64 = 0.01;
 const LEAST_T: f64 = 4.0;
-/// Fewer movements determine no t.
-const FEW: usize = 5;
 
 /// Says that what constraints turn aside is slower than r = nᵀπ, by about the same everywhere; of `rows` rows, those that move by movement.
 pub(crate) fn friction(movements: &[Vec<Along>], rows: usize) -> Option<Finding> {
@@ -28,23 +26,9 @@ pub(crate) fn friction(movements: &[Vec<Along>], rows: usize) -> Option<Finding>
 
 /// Least squares of r − nᵀπ̂ = −f + ε nᵀπ̂ over rows: f in root mean squares of the speed, and its t with movements as units.
 fn missing_speed(movements: &[Vec<Along>], rows: usize) -> Option<(f64, f64)> {
-    let parts = |sample: &Along| (Vector2::new(-1.0, sample.wanted), sample.speed - sample.wanted);
-    let (mut matrix, mut vector, mut power) = (Matrix2::zeros(), Vector2::zeros(), 0.0);
-    for sample in movements.iter().flatten() {
-        let (factors, error) = parts(sample);
-        matrix += factors * factors.transpose();
-        vector += factors * error;
-        power += sample.speed * sample.speed;
-    }
-    let inverse = matrix.try_inverse()?;
-    let fit = inverse * vector;
-    let influence = |samples: &Vec<Along>| {
-        let each = samples.iter().map(parts);
-        each.map(|(factors, error)| (inverse * factors).x * (error - factors.dot(&fit))).sum::<f64>()
-    };
-    let deviation = movements.iter().map(|samples| influence(samples).powi(2)).sum::<f64>().sqrt();
-    let counted = movements.iter().filter(|samples| !samples.is_empty()).count();
-    (counted >= FEW).then(|| (fit.x / (power / rows as f64).sqrt(), fit.x / deviation))
+    let missing = Regression::of(movements, |sample| Vector2::new(-1.0, sample.wanted))?;
+    let power: f64 = movements.iter().flatten().map(|sample| sample.speed * sample.speed).sum();
+    Some((missing.coefficient / (power / rows as f64).sqrt(), missing.t))
 }
 
 #[cfg(test)]

@@ -45,7 +45,7 @@ type Row = (DVector<f64>, f64);
 fn predicts(numbers: &TrustNumbers) -> bool {
     numbers.held_out_error <= TrustNumbers::GOOD_HELD_OUT_ERROR
         && numbers.expected_error <= TrustNumbers::GOOD_EXPECTED_ERROR
-        && numbers.halves.is_none_or(|halves| halves <= TrustNumbers::GOOD_HALVES)
+        && numbers.halves.zip(numbers.good_halves()).is_none_or(|(halves, good)| halves <= good)
 }
 
 /// Share of Σ(r − nᵀπ̂)² that nᵀc explains with one c (n) a movement, learnt from every other quarter of it.

@@ -112,7 +112,7 @@ fn about_error(numbers: &TrustNumbers, found: &mut dyn FnMut(Verdict, String, &s
     }
     if let Some(halves) = numbers.halves.filter(|&halves| halves > TrustNumbers::GOOD_HALVES) {
         found(
-            Verdict::Doubtful,
+            if numbers.good_halves().is_some() { Verdict::Doubtful } else { Verdict::Good },
             format!("policies learnt from two halves of the movements differ by {}", percent(halves)),
             "record more movements, from other starts, or reduce noise",
         );

@@ -12,6 +12,7 @@ mod pushes;
 mod quadratics;
 mod report;
 mod starts;
+mod unexplained;
 
 pub(crate) use between::share_unknown;
 pub(crate) use common_plane::CommonPlane;
@@ -24,3 +25,4 @@ pub use numbers::{AlignedNumbers, TrustNumbers};
 pub(crate) use pushes::pushed;
 pub use report::Trust;
 pub(crate) use starts::slow_starts;
+pub(crate) use unexplained::unexplained;

@@ -65,12 +65,19 @@ impl TrustNumbers {
     pub const GOOD_EXPECTED_ERROR: f64 = 0.06;
     /// The same of PolicyAlign's policy, most of which is a difference that was measured.
     pub const GOOD_MEASURED_ERROR: f64 = 0.1;
-    /// Above this difference of `halves` a policy is doubtful.
+    /// Above this difference of `halves` a policy is doubtful, unless so little error is expected that only halves are too few to learn from.
     pub const GOOD_HALVES: f64 = 0.12;
+    /// Up to this `expected_error` halves may differ.
+    pub const LITTLE_EXPECTED_ERROR: f64 = 0.01;
     /// Below this `direction_coverage` one direction is a guess.
     pub const GOOD_COVERAGE: f64 = 0.1;
     /// Above this share of starts whose roll-outs leave the data the goal lies outside it.
     pub const GOOD_LEAVING: f64 = 0.5;
+
+    /// Above this difference of `halves` the policy is doubtful; none where halves may differ.
+    pub fn good_halves(&self) -> Option<f64> {
+        (self.expected_error > Self::LITTLE_EXPECTED_ERROR).then_some(Self::GOOD_HALVES)
+    }
 
     /// Above this the `expected_error` of the policy handed out makes it doubtful.
     pub fn good_expected_error(&self) -> f64 {

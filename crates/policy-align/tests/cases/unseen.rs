@@ -171,6 +171,21 @@ fn gain(dim: usize, by: f64, seed: u64, constrained: bool) -> Case {
     })
 }
 
+/// Policy and constraint of a movement towards a goal that swings, or whose speed falls with time.
+fn timed(dim: usize, swings: bool, seed: u64) -> Case {
+    taught(dim, seed, |_, rng| {
+        let normals = normals(dim, rng);
+        let duration = SAMPLES as f64 * STEP;
+        let policy = move |t: f64, x: &Vector| match swings {
+            true => {
+                bowl(&(x - DVector::from_fn(dim, |axis, _| if axis == 0 { (3.0 * t / duration).sin() } else { 0.0 })))
+            }
+            false => bowl(x) * (-1.5 * t / duration).exp(),
+        };
+        (Box::new(policy), Box::new(move |t, x| pressed(&normals(t), 0.0, &policy(t, x))))
+    })
+}
+
 /// A gripper turns to one orientation; constraints block turning about some axis.
 fn orientations(seed: u64, constrained: bool, flips: bool) -> Case {
     let mut rng = Random::seed_from_u64(seed);
@@ -294,5 +309,9 @@ pub(crate) fn all() -> Vec<Named> {
         case("all on one cylinder, 3-D", |s| on_surfaces(false, true, s)),
         case("all on spheres about one centre, 3-D", |s| on_surfaces(true, false, s)),
         case("all on spheres about one centre, 3-D, positions only", |s| positions_only(on_surfaces(true, false, s))),
+        case("a goal that swings, 2-D", |s| timed(2, true, s)),
+        case("a goal that swings, 3-D", |s| timed(3, true, s)),
+        case("speed falls with time, 2-D", |s| timed(2, false, s)),
+        case("speed falls with time, 3-D", |s| timed(3, false, s)),
     ]
 }

@@ -1,0 +1,106 @@
+//! Velocities without noise that the state does not explain: they depend on something else.
+
+use nalgebra::Vector2;
+use prepare::numbers::percent_of_all;
+
+use crate::along::{Along, Regression};
+use crate::{Finding, Verdict};
+
+/// Share of the squared velocities that is doubtful.
+const MUCH: f64 = 0.05;
+/// The same where it changes with time: the policy has absorbed most of it.
+const SOME: f64 = 0.005;
+/// Share of it that a speed explains that grows or falls with time, and its t over movements.
+const TIMED: f64 = 0.25;
+const LEAST_T: f64 = 4.0;
+/// Correlation of neighbouring samples above which it is no noise.
+const PERSISTENT: f64 = 0.8;
+
+/// What a policy leaves of velocities: r − nᵀπ̂.
+struct Unexplained {
+    /// Its share of the squares.
+    share: f64,
+    /// Correlation of one sample's with the next one's.
+    persistence: f64,
+    /// How it goes with the time since the start of the movement.
+    timed: Option<Regression>,
+}
+
+impl Unexplained {
+    fn of(movements: &[Vec<Along>]) -> Self {
+        let error = |sample: &Along| sample.speed - sample.wanted;
+        let over = |of: &dyn Fn(&Along) -> f64| movements.iter().flatten().map(of).sum::<f64>();
+        let squares = over(&|sample| error(sample).powi(2));
+        let products = movements.iter().flat_map(|samples| samples.windows(2));
+        let products = products.filter(|pair| pair[0].sample + 1 == pair[1].sample);
+        let together: f64 = products.map(|pair| error(&pair[0]) * error(&pair[1])).sum();
+        Unexplained {
+            share: squares / over(&|sample| sample.speed.powi(2)),
+            persistence: together / squares,
+            timed: Regression::of(movements, |sample| sample.wanted * Vector2::new(sample.sample as f64, 1.0)),
+        }
+    }
+}
+
+/// Says that velocities that were recorded without noise depend on something else than the state. Where left-out movements are not
+/// `predicted` either, it only adds that time is the cause.
+pub(crate) fn unexplained(movements: &[Vec<Along>], predicted: bool) -> Option<Finding> {
+    let Unexplained { share, persistence, timed } = Unexplained::of(movements);
+    let timed = timed.filter(|timed| timed.share > TIMED && timed.t.abs() > LEAST_T);
+    let (cause, bound) = match &timed {
+        Some(Regression { coefficient, .. }) if *coefficient < 0.0 => ("speed falls with time", SOME),
+        Some(_) => ("speed grows with time", SOME),
+        None if predicted => ("but time, a moving target, a delay, a load or the operator", MUCH),
+        None => return None,
+    };
+    (persistence > PERSISTENT && share > bound).then(|| Finding {
+        verdict: Verdict::Doubtful,
+        what: format!("the state does not explain {} of the squared velocities ({cause})", percent_of_all(share)),
+        next: "record what else the motion depends on; what is constant during a movement can be given as --context"
+            .to_owned(),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use motion::SampleIndex;
+    use nalgebra::{DMatrix, DVector};
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::along::{Bowl, along_movements};
+
+    /// Twelve movements of 40 samples whose velocities are those of the bowl times `gain` of the movement and the time, 0 to 1.
+    fn movements(seed: u32, gain: impl Fn(usize, f64) -> f64) -> Vec<Vec<Along>> {
+        let indices: Vec<SampleIndex> = (0..480).map(|i| SampleIndex { trajectory: i / 40, sample: i % 40 }).collect();
+        let time = |index: &SampleIndex| index.sample as f64 / 40.0;
+        let state = |index: &SampleIndex| {
+            let angle = f64::from(seed) + 2.4 * index.trajectory as f64;
+            DVector::from_vec(vec![angle.cos(), angle.sin()]) * (1.5 - time(index))
+        };
+        let states: Vec<DVector<f64>> = indices.iter().map(state).collect();
+        let velocity = |(index, x): (&SampleIndex, &DVector<f64>)| x * -gain(index.trajectory, time(index));
+        let velocities: Vec<DVector<f64>> = indices.iter().zip(&states).map(velocity).collect();
+        let rows = gp::Rows::new(DMatrix::from_columns(&states), DMatrix::from_columns(&velocities), indices).unwrap();
+        along_movements(&Bowl, &rows)
+    }
+
+    proptest! {
+        /// Speeds that fall or grow with time are found and named, also if the policy has absorbed their mean; those that differ between
+        /// movements are found from 5 % of the squares on; noise is not.
+        #[test]
+        fn what_the_state_does_not_explain(seed in 0..1000u32, by in 0.3..0.9f64, growing: bool, little in 0.001..0.1f64) {
+            let sign = if growing { 1.0 } else { -1.0 };
+            let found = unexplained(&movements(seed, |_, time| 1.0 + sign * by * (time - 0.4)), growing).unwrap();
+            let word = if growing { "grows" } else { "falls" };
+            prop_assert!(found.what.contains(word), "{}", found.what);
+            let operators = |by: f64| movements(seed, move |at, _| 1.0 + by * if at % 2 == 0 { 1.0 } else { -1.0 });
+            let found = unexplained(&operators(by), true).unwrap();
+            prop_assert!(found.what.contains("operator"), "{}", found.what);
+            prop_assert!(unexplained(&operators(by), false).is_none());
+            prop_assert!(unexplained(&operators(little), true).is_none());
+            let noise = movements(seed, |at, time| 1.0 + by * (7919.0 * (at as f64 + 1.7 * time)).sin());
+            prop_assert!(unexplained(&noise, true).is_none());
+        }
+    }
+}
