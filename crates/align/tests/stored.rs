@@ -3,12 +3,12 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
 use align::{
-    AlignError, Bandwidth, DirectPolicy, DirectPolicyLearning, Integration, Label, LwprRegressor, PolicyAlign,
+    AlignError, Bandwidth, DirectPolicy, DirectPolicyLearning, Integration, LwprRegressor, PolicyAlign,
     PotentialPolicy, PotentialPolicyLearning,
 };
 use demo_gen::{ToySystem, demonstrations};
 use lwpr::LwprParams;
-use motion::{Demonstrations, LearntPolicy, Policy};
+use motion::{Channel, Demonstrations, LearntPolicy, Policy};
 use nalgebra::DVector;
 use proptest::prelude::*;
 use rand::SeedableRng;
@@ -26,8 +26,8 @@ fn regressor() -> LwprRegressor {
     LwprRegressor { params, passes: 2, ..LwprRegressor::default() }
 }
 
-fn labels() -> Vec<Label> {
-    ["x", "y"].map(|name| Label { name: name.to_owned(), unit: "m".to_owned() }).to_vec()
+fn channels() -> Vec<Channel> {
+    ["x", "y"].map(|name| Channel { name: name.to_owned(), unit: Some("m".to_owned()) }).to_vec()
 }
 
 fn potential_policy() -> PotentialPolicy {
@@ -36,7 +36,7 @@ fn potential_policy() -> PotentialPolicy {
         regressor: regressor(),
     };
     let learnt = learner.learn_policy(&observed(), &[], &mut ChaCha8Rng::seed_from_u64(2)).unwrap();
-    learnt.with_labels(labels()).unwrap()
+    learnt.with_channels(channels()).unwrap()
 }
 
 fn direct_policy() -> DirectPolicy {
@@ -71,7 +71,7 @@ fn what_is_read_back_acts_the_same_to_the_last_bit() {
     assert_eq!(bits(&read), bits(&learnt));
     assert_eq!(read.origin(), learnt.origin());
     assert_eq!((read.kept(), read.warnings()), (learnt.kept(), learnt.warnings()));
-    assert_eq!((read.origin().time_step, &read.origin().labels), (1.0, &labels()));
+    assert_eq!((read.origin().time_step, &read.origin().channels), (1.0, &channels()));
     let [read, learnt] = [read, learnt].map(|policy| bits(&policy.with_cutoff(1e-9).unwrap()));
     assert_eq!(read, learnt);
 
@@ -102,8 +102,9 @@ fn policies_of_version_1_are_read() {
     let potential = golden("potential");
     let policy: PotentialPolicy = serde_json::from_value(potential["policy"].clone()).unwrap();
     assert_golden(&policy, &potential);
-    assert_eq!((policy.dim(), policy.origin().n_trajectories, &policy.origin().labels), (2, 12, &labels()));
+    assert_eq!((policy.dim(), policy.origin().n_trajectories, &policy.origin().channels), (2, 12, &channels()));
     assert_eq!(json!(policy.kept()), potential["policy"]["origin"]["kept"]);
+    assert_eq!(serde_json::to_value(policy.origin()).unwrap(), potential["policy"]["origin"]);
     let direct = golden("direct");
     let policy: DirectPolicy = serde_json::from_value(direct["policy"].clone()).unwrap();
     assert_golden(&policy, &direct);
@@ -152,7 +153,10 @@ fn what_is_damaged_is_refused() {
     let direct = golden("direct")["policy"].clone();
     assert!(read(&direct).contains("of the other kind"));
     let learnt = potential_policy();
-    assert_eq!(learnt.with_labels(labels()[..1].to_vec()).unwrap_err(), AlignError::Labels { found: 1, expected: 2 });
+    assert_eq!(
+        learnt.with_channels(channels()[..1].to_vec()).unwrap_err(),
+        AlignError::Channels { found: 1, expected: 2 }
+    );
 }
 
 proptest! {

@@ -1,6 +1,7 @@
 use std::borrow::Cow;
 
 use nalgebra::{DMatrix, DVector};
+use serde::{Deserialize, Serialize};
 
 use crate::median::upper_median;
 use crate::times::whole_step;
@@ -20,12 +21,13 @@ pub struct Recordings {
     pub findings: Vec<Finding>,
 }
 
-/// A dimension of the state.
-#[derive(Debug, Clone, PartialEq, Eq)]
+/// Name and unit of one dimension of the state.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Channel {
-    /// As in the file.
+    /// As in the file: `x`, `l_elbow`.
     pub name: String,
-    /// If the file or the user says.
+    /// If the file or the user says: `m`, `rad`; a velocity has this unit per second.
     pub unit: Option<String>,
 }
 
