@@ -40,8 +40,7 @@ fn potential_policy() -> PotentialPolicy {
 }
 
 fn direct_policy() -> DirectPolicy {
-    let LwprRegressor { params, passes, cutoff } = regressor();
-    let learner = DirectPolicyLearning { params, passes, cutoff };
+    let learner = DirectPolicyLearning { regressor: regressor() };
     learner.learn_policy(&observed(), &[], &mut ChaCha8Rng::seed_from_u64(3)).unwrap()
 }
 
@@ -182,8 +181,10 @@ fn parameters_are_stored_and_what_is_not_said_is_the_default() {
     };
     let text = serde_json::to_string(&learner).unwrap();
     assert_eq!(serde_json::from_str::<PotentialPolicyLearning>(&text).unwrap(), learner);
-    let direct = DirectPolicyLearning { passes: 3, ..Default::default() };
+    let direct = DirectPolicyLearning { regressor: LwprRegressor { passes: 3, ..Default::default() } };
     let text = serde_json::to_string(&direct).unwrap();
+    assert_eq!(text, serde_json::to_string(&direct.regressor).unwrap());
+    assert!(text.starts_with(r#"{"params":{"#) && text.ends_with(r#""passes":3,"cutoff":0.001}"#), "{text}");
     assert_eq!(serde_json::from_str::<DirectPolicyLearning>(&text).unwrap(), direct);
 
     let said = r#"{ "align": { "bandwidth": "Medium" }, "regressor": { "passes": 7 } }"#;
@@ -192,5 +193,6 @@ fn parameters_are_stored_and_what_is_not_said_is_the_default() {
         regressor: LwprRegressor { passes: 7, ..Default::default() },
     };
     assert_eq!(serde_json::from_str::<PotentialPolicyLearning>(said).unwrap(), expected);
+    assert!(serde_json::from_str::<DirectPolicyLearning>(r#"{ "pases": 3 }"#).is_err());
     assert!(serde_json::from_str::<PolicyAlign>(r#"{ "bandwith": "Medium" }"#).is_err());
 }

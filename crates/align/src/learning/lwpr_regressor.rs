@@ -6,7 +6,8 @@ use serde::{Deserialize, Serialize};
 use super::regression::{default_params, fit};
 use crate::{AlignError, GlobalPotential, Regressor};
 
-/// Learns a potential (23) by locally weighted projection regression, from values that are centred.
+/// Learns by locally weighted projection regression, from values that are centred: a potential (23), or velocities in
+/// [`DirectPolicyLearning`](crate::DirectPolicyLearning).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct LwprRegressor {
@@ -37,6 +38,6 @@ impl Regressor for LwprRegressor {
         rng: &mut dyn Rng,
     ) -> Result<GlobalPotential, AlignError> {
         let outputs = DMatrix::from_row_slice(1, values.len(), values.as_slice());
-        fit(&self.params, self.passes, self.cutoff, states, &outputs, rng).map(GlobalPotential::new)
+        fit(self, states, &outputs, rng).map(GlobalPotential::new)
     }
 }

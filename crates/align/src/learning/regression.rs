@@ -5,7 +5,7 @@ use motion::standard_deviation;
 use nalgebra::{DMatrix, DVector, DVectorView};
 use rand::Rng;
 
-use crate::AlignError;
+use crate::{AlignError, LwprRegressor};
 
 /// Dimensions that vary by less than this share of the one that varies most are idle.
 const IDLE: f64 = 1e-3;
@@ -18,9 +18,7 @@ pub(crate) fn default_params() -> LwprParams {
 
 /// Learns `outputs` (n_out, M) from `states` (n, M), one column a sample.
 pub(crate) fn fit(
-    params: &LwprParams,
-    passes: usize,
-    cutoff: f64,
+    LwprRegressor { params, passes, cutoff }: &LwprRegressor,
     states: &DMatrix<f64>,
     outputs: &DMatrix<f64>,
     rng: &mut dyn Rng,
@@ -29,7 +27,8 @@ pub(crate) fn fit(
         return Err(AlignError::NoSamples);
     }
     let norm_in = params.norm_in.clone().unwrap_or_else(|| DVector::repeat(states.nrows(), spread(states)));
-    let training = Training { params: LwprParams { norm_in: Some(norm_in), ..params.clone() }, passes, cutoff };
+    let training =
+        Training { params: LwprParams { norm_in: Some(norm_in), ..params.clone() }, passes: *passes, cutoff: *cutoff };
     Ok(training.fit(states.as_view(), outputs.as_view(), rng)?)
 }
 
