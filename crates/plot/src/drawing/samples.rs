@@ -28,8 +28,8 @@ pub(crate) fn draw(names: &[(&str, Sample)], scene: &mut Scene) {
         if let (Primitive::Line { x1, x2, y1, stroke, .. }, Some((name_at, sample))) = (&mut element, named.take()) {
             (*x1, *x2) = (name_at - FROM, name_at - TO);
             if sample == Sample::Arrow {
-                let (foot, corners) = arrowhead((*x1, *y1), (*x2, *y1), HEAD.0, HEAD.1);
-                head = Some(area(&corners, stroke.clone()));
+                let (foot, [tip, below, above]) = arrowhead((*x1, *y1), (*x2, *y1), HEAD.0, HEAD.1);
+                head = Some(area(&[tip, above, below], stroke.clone()));
                 *x2 = foot.0;
             }
         }
