@@ -4,16 +4,16 @@ use std::borrow::Cow;
 /// direction of writing, what has no width and what XML does not allow is spelt out, as `\u{1b}`; ends of lines and tabs
 /// stay, and so do joiners and selectors of emoji and of writing systems that need them, where those change what is seen.
 pub fn plain(text: &str) -> Cow<'_, str> {
-    let visible = |(at, c): &(usize, char)| !is_hidden(*c) && !(is_joiner(*c) && joins_nothing(text, *at, *c));
-    if text.char_indices().all(|place| visible(&place)) {
+    let is_lost = |(at, c): (usize, char)| is_hidden(c) || is_joiner(c) && joins_nothing(text, at, c);
+    if !text.char_indices().any(is_lost) {
         return Cow::Borrowed(text);
     }
     let mut spelt = String::with_capacity(text.len() + 8);
     for place in text.char_indices() {
-        if visible(&place) {
-            spelt.push(place.1);
-        } else {
+        if is_lost(place) {
             spelt.extend(place.1.escape_unicode());
+        } else {
+            spelt.push(place.1);
         }
     }
     Cow::Owned(spelt)
