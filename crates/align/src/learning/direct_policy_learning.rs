@@ -3,7 +3,6 @@ use nalgebra::DMatrix;
 use rand::Rng;
 use serde::{Deserialize, Serialize};
 
-use super::regression::fit;
 use crate::checks::one_context;
 use crate::{AlignError, DirectPolicy, LwprRegressor, Origin};
 
@@ -33,7 +32,7 @@ impl DirectPolicyLearning {
     ) -> Result<DirectPolicy, AlignError> {
         one_context(demonstrations)?;
         let (states, velocities) = observed(demonstrations, held_out);
-        let regression = fit(&self.regressor, &states, &velocities, rng)?;
+        let regression = self.regressor.regression(&states, &velocities, rng)?;
         Ok(DirectPolicy::new(regression, Origin::new(demonstrations)))
     }
 }
