@@ -94,9 +94,9 @@ pub enum AlignError {
     /// No sample is left to learn from.
     #[error("no sample is left to learn from; hold out fewer or give more trajectories")]
     NoSamples,
-    /// There is not one label for each dimension.
-    #[error("{found} labels for a state of {expected} dimensions; give one for each, or none")]
-    Labels {
+    /// There is not one channel for each dimension.
+    #[error("{found} channels for a state of {expected} dimensions; give one for each, or none")]
+    Channels {
         /// How many were given.
         found: usize,
         /// How many dimensions there are.

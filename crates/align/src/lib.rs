@@ -90,7 +90,7 @@ pub use bandwidth::Bandwidth;
 pub use error::AlignError;
 pub use integration::Integration;
 pub use learning::{
-    DirectPolicy, DirectPolicyLearning, GlobalPotential, Label, LwprRegressor, Origin, PotentialPolicy,
+    DirectPolicy, DirectPolicyLearning, GlobalPotential, LwprRegressor, Origin, PotentialPolicy,
     PotentialPolicyLearning, Regressor,
 };
 pub use local_potential::LocalPotential;

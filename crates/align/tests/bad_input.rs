@@ -206,8 +206,7 @@ fn what_the_regression_refuses() {
         ("metric", LwprRegressor { params: bad_metric, ..Default::default() }, None),
     ];
     for (name, regressor, expected) in cases {
-        let LwprRegressor { params, passes, cutoff } = regressor.clone();
-        let naive = DirectPolicyLearning { params, passes, cutoff };
+        let naive = DirectPolicyLearning { regressor: regressor.clone() };
         let errors = [
             aligned.regress(&regressor, &aligned.samples(), &mut rng).unwrap_err(),
             naive.learn_policy(aligned.demonstrations(), &[], &mut rng).unwrap_err(),

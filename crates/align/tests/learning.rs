@@ -34,7 +34,7 @@ fn regressor() -> LwprRegressor {
 }
 
 fn naive() -> DirectPolicyLearning {
-    DirectPolicyLearning { params: params(), ..Default::default() }
+    DirectPolicyLearning { regressor: regressor() }
 }
 
 /// (n, M) of a vector function at all true states.

@@ -1,12 +1,12 @@
 //! What was learnt is stored and read back: the same bits, for ever, and nothing that is damaged.
 
 use align::{
-    AlignError, Bandwidth, DirectPolicy, DirectPolicyLearning, Integration, Label, LwprRegressor, PolicyAlign,
+    AlignError, Bandwidth, DirectPolicy, DirectPolicyLearning, Integration, LwprRegressor, PolicyAlign,
     PotentialPolicy, PotentialPolicyLearning,
 };
 use demo_gen::{ToySystem, demonstrations};
 use lwpr::LwprParams;
-use motion::{Demonstrations, LearntPolicy, Policy};
+use motion::{Channel, Demonstrations, LearntPolicy, Policy};
 use nalgebra::DVector;
 use proptest::prelude::*;
 use rand::SeedableRng;
@@ -24,8 +24,8 @@ fn regressor() -> LwprRegressor {
     LwprRegressor { params, passes: 2, ..LwprRegressor::default() }
 }
 
-fn labels() -> Vec<Label> {
-    ["x", "y"].map(|name| Label { name: name.to_owned(), unit: "m".to_owned() }).to_vec()
+fn channels() -> Vec<Channel> {
+    ["x", "y"].map(|name| Channel { name: name.to_owned(), unit: Some("m".to_owned()) }).to_vec()
 }
 
 fn potential_policy() -> PotentialPolicy {
@@ -34,12 +34,11 @@ fn potential_policy() -> PotentialPolicy {
         regressor: regressor(),
     };
     let learnt = learner.learn_policy(&observed(), &[], &mut ChaCha8Rng::seed_from_u64(2)).unwrap();
-    learnt.with_labels(labels()).unwrap()
+    learnt.with_channels(channels()).unwrap()
 }
 
 fn direct_policy() -> DirectPolicy {
-    let LwprRegressor { params, passes, cutoff } = regressor();
-    let learner = DirectPolicyLearning { params, passes, cutoff };
+    let learner = DirectPolicyLearning { regressor: regressor() };
     learner.learn_policy(&observed(), &[], &mut ChaCha8Rng::seed_from_u64(3)).unwrap()
 }
 
@@ -69,7 +68,7 @@ fn what_is_read_back_acts_the_same_to_the_last_bit() {
     assert_eq!(bits(&read), bits(&learnt));
     assert_eq!(read.origin(), learnt.origin());
     assert_eq!((read.kept(), read.warnings()), (learnt.kept(), learnt.warnings()));
-    assert_eq!((read.origin().time_step, &read.origin().labels), (1.0, &labels()));
+    assert_eq!((read.origin().time_step, &read.origin().channels), (1.0, &channels()));
     let [read, learnt] = [read, learnt].map(|policy| bits(&policy.with_cutoff(1e-9).unwrap()));
     assert_eq!(read, learnt);
 
@@ -100,8 +99,9 @@ fn policies_of_version_1_are_read() {
     let potential = golden("potential");
     let policy: PotentialPolicy = serde_json::from_value(potential["policy"].clone()).unwrap();
     assert_golden(&policy, &potential);
-    assert_eq!((policy.dim(), policy.origin().n_trajectories, &policy.origin().labels), (2, 12, &labels()));
+    assert_eq!((policy.dim(), policy.origin().n_trajectories, &policy.origin().channels), (2, 12, &channels()));
     assert_eq!(json!(policy.kept()), potential["policy"]["origin"]["kept"]);
+    assert_eq!(serde_json::to_value(policy.origin()).unwrap(), potential["policy"]["origin"]);
     let direct = golden("direct");
     let policy: DirectPolicy = serde_json::from_value(direct["policy"].clone()).unwrap();
     assert_golden(&policy, &direct);
@@ -150,7 +150,10 @@ fn what_is_damaged_is_refused() {
     let direct = golden("direct")["policy"].clone();
     assert!(read(&direct).contains("of the other kind"));
     let learnt = potential_policy();
-    assert_eq!(learnt.with_labels(labels()[..1].to_vec()).unwrap_err(), AlignError::Labels { found: 1, expected: 2 });
+    assert_eq!(
+        learnt.with_channels(channels()[..1].to_vec()).unwrap_err(),
+        AlignError::Channels { found: 1, expected: 2 }
+    );
 }
 
 proptest! {
@@ -176,8 +179,10 @@ fn parameters_are_stored_and_what_is_not_said_is_the_default() {
     };
     let text = serde_json::to_string(&learner).unwrap();
     assert_eq!(serde_json::from_str::<PotentialPolicyLearning>(&text).unwrap(), learner);
-    let direct = DirectPolicyLearning { passes: 3, ..Default::default() };
+    let direct = DirectPolicyLearning { regressor: LwprRegressor { passes: 3, ..Default::default() } };
     let text = serde_json::to_string(&direct).unwrap();
+    assert_eq!(text, serde_json::to_string(&direct.regressor).unwrap());
+    assert!(text.starts_with(r#"{"params":{"#) && text.ends_with(r#""passes":3,"cutoff":0.001}"#), "{text}");
     assert_eq!(serde_json::from_str::<DirectPolicyLearning>(&text).unwrap(), direct);
 
     let said = r#"{ "align": { "bandwidth": "Medium" }, "regressor": { "passes": 7 } }"#;
@@ -186,5 +191,6 @@ fn parameters_are_stored_and_what_is_not_said_is_the_default() {
         regressor: LwprRegressor { passes: 7, ..Default::default() },
     };
     assert_eq!(serde_json::from_str::<PotentialPolicyLearning>(said).unwrap(), expected);
+    assert!(serde_json::from_str::<DirectPolicyLearning>(r#"{ "pases": 3 }"#).is_err());
     assert!(serde_json::from_str::<PolicyAlign>(r#"{ "bandwith": "Medium" }"#).is_err());
 }

@@ -7,8 +7,6 @@ pub enum Series {
     States,
     /// The recorded velocities or commands u.
     Velocities,
-    /// The context c.
-    Context,
 }
 
 impl std::fmt::Display for Series {
@@ -16,7 +14,6 @@ impl std::fmt::Display for Series {
         f.write_str(match self {
             Series::States => "states",
             Series::Velocities => "velocities",
-            Series::Context => "context",
         })
     }
 }
@@ -36,6 +33,14 @@ pub enum MotionError {
         sample: usize,
         /// Row of the value.
         dimension: usize,
+        /// The value itself.
+        value: f64,
+    },
+    /// A number of the context is NaN or infinite.
+    #[error("context, number {number}: {value} is not a finite number; give one, or leave the movement out")]
+    ContextNotFinite {
+        /// Which number of the context.
+        number: usize,
         /// The value itself.
         value: f64,
     },

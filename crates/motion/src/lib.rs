@@ -90,7 +90,7 @@ pub use policy::{NegativeGradient, Policy, Potential};
 pub use recordings::{Channel, Episode, Recordings, Rows, Source, is_called_context};
 pub use samples::{Labels, SampleIndex, SampleSet};
 pub use scaled::scaled;
-pub use times::Times;
+pub use times::{Times, whole_step};
 pub use trajectory::Trajectory;
 
 /// The program of the README, compiled.

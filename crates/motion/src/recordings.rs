@@ -1,8 +1,10 @@
 use std::borrow::Cow;
 
 use nalgebra::{DMatrix, DVector};
+use serde::{Deserialize, Serialize};
 
 use crate::median::upper_median;
+use crate::times::whole_step;
 use crate::{Finding, Labels, MotionError, Times, Trajectory};
 
 /// What was recorded: n channels of state, and episodes of any length.
@@ -19,12 +21,13 @@ pub struct Recordings {
     pub findings: Vec<Finding>,
 }
 
-/// A dimension of the state.
-#[derive(Debug, Clone, PartialEq, Eq)]
+/// Name and unit of one dimension of the state.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Channel {
-    /// As in the file.
+    /// As in the file: `x`, `l_elbow`.
     pub name: String,
-    /// If the file or the user says.
+    /// If the file or the user says: `m`, `rad`; a velocity has this unit per second.
     pub unit: Option<String>,
 }
 
@@ -92,9 +95,8 @@ impl From<Recordings> for Cow<'_, Recordings> {
 }
 
 impl Recordings {
-    /// The usual time between samples in seconds: the median over all episodes, put on the nearest whole rate (in Hz) or
-    /// whole number of milliseconds if that is within 0.1 %. A step that was given rather than measured (all stamps are
-    /// multiples of it) is taken as it is. 0 without a step.
+    /// The usual time between samples in seconds: the median over all episodes as a [`whole_step`]. A step that was given
+    /// rather than measured (all stamps are multiples of it) is taken as it is. 0 without a step.
     pub fn time_step(&self) -> f64 {
         let times = || self.episodes.iter().map(|episode| &episode.times);
         let mut given = times().filter(|times| times.len() > 1).map(given_step);
@@ -105,7 +107,7 @@ impl Recordings {
         }
         let total: usize = times().map(|times| times.len().saturating_sub(1)).sum();
         let stride = total.div_ceil(MOST_STEPS).max(1);
-        on_grid(upper_median(times().flat_map(Times::steps).step_by(stride).collect()).unwrap_or(0.0))
+        whole_step(upper_median(times().flat_map(Times::steps).step_by(stride).collect()).unwrap_or(0.0))
     }
 }
 
@@ -117,13 +119,6 @@ fn given_step(times: &Times) -> Option<f64> {
 
 /// The median is taken over at most so many steps.
 const MOST_STEPS: usize = 1_000_000;
-
-fn on_grid(step: f64) -> f64 {
-    let rate = 1.0 / (1.0 / step).round();
-    let milliseconds = (step * 1e3).round() * 1e-3;
-    let near = |candidate: f64| (candidate - step).abs() <= 1e-3 * step;
-    [rate, milliseconds].into_iter().find(|&candidate| near(candidate)).unwrap_or(step)
-}
 
 impl Episode {
     /// Number of samples N.

@@ -101,3 +101,45 @@ impl FromIterator<f64> for Times {
         Times::Stamped(stamps.into_iter().collect())
     }
 }
+
+/// A step this near to a whole one is that one, as a share of it.
+const WHOLE: f64 = 1e-3;
+
+/// A measured time step in seconds without the rounding of its stamps: 1/k s or k ms, whichever is nearer, if that is within
+/// 0.1 % of it.
+pub fn whole_step(step: f64) -> f64 {
+    let near = |candidate: f64| (candidate > 0.0 && (candidate / step - 1.0).abs() < WHOLE).then_some(candidate);
+    let rate = near(1.0 / (1.0 / step).round()).filter(|step| step.is_finite());
+    let milliseconds = near((step * 1000.0).round() / 1000.0);
+    let off = |candidate: &f64| (candidate - step).abs();
+    let nearest = [rate, milliseconds].into_iter().flatten().min_by(|a, b| off(a).total_cmp(&off(b)));
+    nearest.unwrap_or(step)
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        #[test]
+        fn what_is_found_is_whole_and_as_near_as_the_one_it_came_from(count in 1u16..2000, of_rate in any::<bool>(), off in -0.9e-3..0.9e-3_f64) {
+            let count = f64::from(count);
+            let step = (if of_rate { 1.0 / count } else { count / 1000.0 }) * (1.0 + off);
+            let found = whole_step(step);
+            let distance = |to: f64| (to - step).abs();
+            prop_assert!(distance(found) <= distance(step / (1.0 + off)));
+            prop_assert!(found == 1.0 / (1.0 / found).round() || found == (found * 1000.0).round() / 1000.0);
+        }
+    }
+
+    #[test]
+    fn of_two_whole_steps_the_nearer_is_taken() {
+        assert_eq!(whole_step(0.142_95), 0.143);
+        assert_eq!(whole_step(0.142_87), 1.0 / 7.0);
+        assert_eq!(whole_step(0.017_01), 0.017);
+        assert_eq!(whole_step(0.017_1), 0.017_1);
+        assert_eq!(whole_step(0.0), 0.0);
+    }
+}

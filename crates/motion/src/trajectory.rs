@@ -72,10 +72,12 @@ impl Trajectory {
     /// the place of an object, or a load.
     ///
     /// # Errors
-    /// [`MotionError::NotFinite`].
+    /// [`MotionError::ContextNotFinite`].
     pub fn with_context(self, context: DVector<f64>) -> Result<Self, MotionError> {
-        require_finite(&DMatrix::from_column_slice(context.len(), 1, context.as_slice()), Series::Context)?;
-        Ok(Trajectory { context, ..self })
+        match context.iter().position(|value| !value.is_finite()) {
+            None => Ok(Trajectory { context, ..self }),
+            Some(number) => Err(MotionError::ContextNotFinite { number, value: context[number] }),
+        }
     }
 
     /// The same movement with the names of its constraints, which tell where they switched; none if that is not known.

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
-use motion::{Demonstrations, MotionError, Series, Trajectory, is_called_context};
+use motion::{Demonstrations, MotionError, Trajectory, is_called_context};
 use nalgebra::{DMatrix, DVector, dvector};
 
 fn movement() -> Trajectory {
@@ -24,7 +24,8 @@ fn it_stays_when_states_change() {
 #[test]
 fn it_is_finite_and_all_movements_have_one_alike() {
     let wrong = movement().with_context(dvector![1.0, f64::INFINITY]).unwrap_err();
-    assert!(matches!(wrong, MotionError::NotFinite { series: Series::Context, dimension: 1, .. }));
+    assert_eq!(wrong, MotionError::ContextNotFinite { number: 1, value: f64::INFINITY });
+    assert!(!wrong.to_string().contains("sample"), "{wrong}");
     let alike = |p: usize| movement().with_context(DVector::zeros(p)).unwrap();
     let wrong = Demonstrations::new(vec![alike(2), alike(2), alike(1)]).unwrap_err();
     assert_eq!(wrong, MotionError::ContextDimensions { trajectory: 2, found: 1, expected: 2 });

@@ -28,14 +28,14 @@ const APART: f64 = 0.05;
 /// Points of the line along which values are written.
 const POINTS: usize = 400;
 
-/// A value on its line.
+/// A value written on its line.
 #[derive(Debug, PartialEq)]
-pub(crate) struct Label {
+pub(crate) struct Written {
     at: (f64, f64),
     text: String,
 }
 
-impl Label {
+impl Written {
     pub(crate) fn annotation(&self) -> TextAnnotation {
         TextAnnotation::new(&self.text, self.at.0, self.at.1).with_font_size(SIZE)
     }
@@ -44,37 +44,38 @@ impl Label {
 /// The lines; nothing where all that is known is level.
 pub(crate) fn lines(field: &Field, known: &[Vec<bool>], label: String) -> Option<Plot> {
     let levels = levels(field, known);
-    let Field { x, y, values } = field.clone();
-    let contours = ContourPlot::new().with_grid(values, x, y).with_levels(&levels);
+    let contours = ContourPlot::new()
+        .with_grid(field.values().to_vec(), field.x().to_vec(), field.y().to_vec())
+        .with_levels(&levels);
     (!levels.is_empty()).then(|| Plot::Contour(contours.with_line_color(LINE).with_line_width(0.9).with_legend(label)))
 }
 
 /// The values, along the straight line from the lowest known place to the highest, which meets every line.
-pub(crate) fn labels(field: &Field, known: &[Vec<bool>]) -> Vec<Label> {
+pub(crate) fn written(field: &Field, known: &[Vec<bool>]) -> Vec<Written> {
     let levels = levels(field, known);
     let decimals = decimals(&levels);
     let (Some(low), Some(high)) = (extreme(field, known, 1.0), extreme(field, known, -1.0)) else { return vec![] };
-    let extent = [&field.x, &field.y].map(|grid| grid[grid.len() - 1] - grid[0]).into_iter().fold(0.0, f64::max);
+    let extent = [field.x(), field.y()].map(|grid| grid[grid.len() - 1] - grid[0]).into_iter().fold(0.0, f64::max);
     let line: Vec<_> = (0..=POINTS).map(|i| field.between(low, high, i as f64 / POINTS as f64)).collect();
-    let mut labels: Vec<Label> = vec![];
+    let mut written: Vec<Written> = vec![];
     for level in levels {
         let met = line.windows(2).find(|pair| (pair[0].1 <= level) != (pair[1].1 <= level));
         let Some(at) = met.map(|pair| pair[0].0) else { continue };
-        let far = |label: &Label| (label.at.0 - at.0).hypot(label.at.1 - at.1) >= APART * extent;
-        if labels.iter().all(far) {
+        let far = |other: &Written| (other.at.0 - at.0).hypot(other.at.1 - at.1) >= APART * extent;
+        if written.iter().all(far) {
             let text = format!("{level:.decimals$}");
-            labels.push(Label { at, text: if level == 0.0 { "0".to_owned() } else { text } });
+            written.push(Written { at, text: if level == 0.0 { "0".to_owned() } else { text } });
         }
     }
-    labels
+    written
 }
 
 /// Puts values on their lines, which give way to them.
-pub(crate) fn uncross(labels: &[Label], scene: &mut Scene) {
+pub(crate) fn put_on_lines(values: &[Written], scene: &mut Scene) {
     let mut drawn = Vec::with_capacity(scene.elements.len());
     for mut element in std::mem::take(&mut scene.elements) {
         if let Primitive::Text { x, y, content, size: SIZE, color, .. } = &mut element
-            && labels.iter().any(|label| label.text == *content)
+            && values.iter().any(|value| value.text == *content)
         {
             *y += ABOVE + 0.36 * f64::from(SIZE);
             *color = Some(Color::from(INK));
@@ -89,7 +90,7 @@ pub(crate) fn uncross(labels: &[Label], scene: &mut Scene) {
 
 /// Round values between the least known one and the largest.
 fn levels(field: &Field, known: &[Vec<bool>]) -> Vec<f64> {
-    let value = |(row, column): (usize, usize)| field.values[row][column];
+    let value = |(row, column): (usize, usize)| field.values()[row][column];
     match (extreme(field, known, 1.0).map(value), extreme(field, known, -1.0).map(value)) {
         (Some(low), Some(high)) if low < high => ticks(low, high, LINES),
         _ => vec![],
@@ -98,25 +99,27 @@ fn levels(field: &Field, known: &[Vec<bool>]) -> Vec<f64> {
 
 /// Row and column of the known place that is least, or largest where `sign` is −1.
 fn extreme(field: &Field, known: &[Vec<bool>], sign: f64) -> Option<(usize, usize)> {
-    let places = (0..field.y.len()).flat_map(|row| (0..field.x.len()).map(move |column| (row, column)));
-    let value = |&(row, column): &(usize, usize)| field.values[row][column];
-    let known = places.filter(|place| known[place.0][place.1] && value(place).is_finite());
+    let places = (0..field.y().len()).flat_map(|row| (0..field.x().len()).map(move |column| (row, column)));
+    let value = |&(row, column): &(usize, usize)| field.values()[row][column];
+    let is_known = |&(row, column): &(usize, usize)| known.get(row).and_then(|row| row.get(column)) == Some(&true);
+    let known = places.filter(|place| is_known(place) && value(place).is_finite());
     known.min_by(|a, b| (sign * value(a)).total_cmp(&(sign * value(b))))
 }
 
 impl Field {
     /// Place and value a share of the way from one place of the grid to another, (row, column).
     fn between(&self, from: (usize, usize), to: (usize, usize), share: f64) -> ((f64, f64), f64) {
+        let (x, y, values) = (self.x(), self.y(), self.values());
         let along = |from: usize, to: usize| from as f64 + share * (to as f64 - from as f64);
         let (row, column) = (along(from.0, to.0), along(from.1, to.1));
         let split = |place: f64, length: usize| {
             let below = (place as usize).min(length - 2);
             (below, place - below as f64)
         };
-        let ((i, up), (j, right)) = (split(row, self.y.len()), split(column, self.x.len()));
+        let ((i, up), (j, right)) = (split(row, y.len()), split(column, x.len()));
         let mix = |a: f64, b: f64, share: f64| a * (1.0 - share) + b * share;
-        let level = |i: usize| mix(self.values[i][j], self.values[i][j + 1], right);
-        let at = (mix(self.x[j], self.x[j + 1], right), mix(self.y[i], self.y[i + 1], up));
+        let level = |i: usize| mix(values[i][j], values[i][j + 1], right);
+        let at = (mix(x[j], x[j + 1], right), mix(y[i], y[i + 1], up));
         (at, mix(level(i), level(i + 1), up))
     }
 }
@@ -129,15 +132,15 @@ mod tests {
     fn bowl() -> Field {
         let grid: Vec<f64> = (-20..=20).map(|i| f64::from(i) / 10.0).collect();
         let values = grid.iter().map(|y| grid.iter().map(|x| x * x + y * y).collect()).collect();
-        Field { x: grid.clone(), y: grid, values }
+        Field::new(grid.clone(), grid, values).unwrap()
     }
 
     #[test]
     fn values_stand_on_their_lines() {
         let field = bowl();
-        let labels = labels(&field, &vec![vec![true; 41]; 41]);
-        assert!(labels.len() >= 4, "{labels:?}");
-        for Label { at: (x, y), text } in labels {
+        let written = written(&field, &vec![vec![true; 41]; 41]);
+        assert!(written.len() >= 4, "{written:?}");
+        for Written { at: (x, y), text } in written {
             assert!((x * x + y * y - text.parse::<f64>().unwrap()).abs() < 0.1, "{text} at {x}, {y}");
         }
     }
@@ -146,13 +149,13 @@ mod tests {
     fn only_what_is_known_counts() {
         let field = bowl();
         let known: Vec<Vec<bool>> =
-            field.y.iter().map(|y| field.x.iter().map(|x| x.hypot(*y) <= 1.0).collect()).collect();
+            field.y().iter().map(|y| field.x().iter().map(|x| x.hypot(*y) <= 1.0).collect()).collect();
         let levels = levels(&field, &known);
         assert!(levels.len() > 2 && levels.iter().all(|level| (0.0..=1.0).contains(level)), "{levels:?}");
-        assert!(labels(&field, &known).iter().all(|label| label.at.0.hypot(label.at.1) <= 1.01));
+        assert!(written(&field, &known).iter().all(|value| value.at.0.hypot(value.at.1) <= 1.01));
         for known in [vec![vec![false; 41]; 41], vec![vec![true; 41]; 41]] {
-            let flat = Field { values: vec![vec![3.0; 41]; 41], ..bowl() };
-            assert!(lines(&flat, &known, String::new()).is_none() && labels(&flat, &known).is_empty());
+            let flat = Field::new(field.x().to_vec(), field.y().to_vec(), vec![vec![3.0; 41]; 41]).unwrap();
+            assert!(lines(&flat, &known, String::new()).is_none() && written(&flat, &known).is_empty());
         }
     }
 }

@@ -16,18 +16,6 @@ pub struct Sketch {
     pub(crate) rasters: Vec<Raster>,
 }
 
-/// A scalar field on a grid: `values[row][column]` at (`x[column]`, `y[row]`). Panels need at least two columns and two rows of equal
-/// length, and panic otherwise.
-#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
-pub struct Field {
-    /// Places of the columns.
-    pub x: Vec<f64>,
-    /// Places of the rows.
-    pub y: Vec<f64>,
-    /// One row for each y.
-    pub values: Vec<Vec<f64>>,
-}
-
 /// What marks the group of a scene that has pixels in it, before their number.
 const MARK: &str = "data-raster=\"";
 

@@ -7,7 +7,7 @@ use crate::drawing::samples::{self, Sample};
 use crate::drawing::sheet::{Edge, titled, with_axes};
 use crate::drawing::smooth;
 use crate::drawing::style::heights;
-use crate::levels::Label;
+use crate::levels::Written;
 use crate::{Field, Mark, Panel, Sketch, Stroke, colour_scale, levels};
 
 /// One thing drawn in the plane; later layers lie on top.
@@ -19,7 +19,7 @@ pub enum Layer {
     Levels {
         /// Values on a grid.
         field: Field,
-        /// Which of them are meant: values are round between the least and the largest of these, and written among them.
+        /// Which of them are meant, those without an entry are not: values are round between the least and the largest of these, and written among them.
         known: Vec<Vec<bool>>,
         /// Of the lines in the legend.
         label: String,
@@ -137,6 +137,15 @@ impl Plane {
         }
         self.layers.iter().filter_map(name).collect()
     }
+
+    /// The values on lines of all layers.
+    fn values(&self) -> Vec<Written> {
+        let of = |layer: &Layer| match layer {
+            Layer::Levels { field, known, .. } => levels::written(field, known),
+            _ => vec![],
+        };
+        self.layers.iter().flat_map(of).collect()
+    }
 }
 
 impl Panel for Plane {
@@ -148,16 +157,16 @@ impl Panel for Plane {
             .with_legend_position(LegendPosition::OutsideBottomColumns)
             .with_legend_box(false)
             .with_equal_aspect();
-        layout.annotations = self.layers.iter().flat_map(words).collect();
+        let values = self.values();
+        let words = self.layers.iter().filter_map(words);
+        layout.annotations = words.chain(values.iter().map(Written::annotation)).collect();
         let mut scene = render_multiple(plots, layout);
         let mut rasters = vec![];
+        levels::put_on_lines(&values, &mut scene);
         for layer in &self.layers {
-            if let Layer::Levels { field, known, .. } = layer {
-                levels::uncross(&levels::labels(field, known), &mut scene);
-            }
             if let Layer::Colors { name, field, range } = layer {
                 colour_scale::complete(name, &mut scene);
-                let range = range.unwrap_or_else(|| smooth::range(field.values.iter().flatten()));
+                let range = range.unwrap_or_else(|| smooth::range(field.values().iter().flatten()));
                 rasters.extend(smooth::instead_of_squares(field, range, rasters.len(), &mut scene));
             }
         }
@@ -170,7 +179,8 @@ fn plot(layer: &Layer) -> Option<Plot> {
     Some(match layer.clone() {
         Layer::Words { .. } => return None,
         Layer::Levels { field, known, label } => return levels::lines(&field, &known, label),
-        Layer::Contours(Field { x, y, values }) => {
+        Layer::Contours(field) => {
+            let (x, y, values) = (field.x().to_vec(), field.y().to_vec(), field.values().to_vec());
             let contours = ContourPlot::new().with_grid(values, x, y).with_n_levels(12);
             Plot::Contour(contours.with_line_color("#b8b8b8").with_line_width(0.8))
         }
@@ -201,8 +211,9 @@ fn plot(layer: &Layer) -> Option<Plot> {
 
 /// A stand-in for a field, as wide and with colours for the same numbers: its scale is drawn from it, its four squares give
 /// way to [`smooth::instead_of_squares`].
-fn colors(Field { x, y, values }: &Field, range: Option<[f64; 2]>) -> Heatmap {
-    let [low, high] = range.unwrap_or_else(|| smooth::range(values.iter().flatten()));
+fn colors(field: &Field, range: Option<[f64; 2]>) -> Heatmap {
+    let (x, y) = (field.x(), field.y());
+    let [low, high] = range.unwrap_or_else(|| smooth::range(field.values().iter().flatten()));
     Heatmap::new()
         .with_data(vec![vec![low, high]; 2])
         .with_x_range(x[0], x[x.len() - 1])
@@ -211,12 +222,9 @@ fn colors(Field { x, y, values }: &Field, range: Option<[f64; 2]>) -> Heatmap {
         .with_color_map(heights())
 }
 
-fn words(layer: &Layer) -> Vec<TextAnnotation> {
-    match layer {
-        Layer::Words { at, text } => vec![TextAnnotation::new(text, at.0, at.1).with_font_size(13)],
-        Layer::Levels { field, known, .. } => levels::labels(field, known).iter().map(Label::annotation).collect(),
-        _ => vec![],
-    }
+fn words(layer: &Layer) -> Option<TextAnnotation> {
+    let Layer::Words { at, text } = layer else { return None };
+    Some(TextAnnotation::new(text, at.0, at.1).with_font_size(13))
 }
 
 /// The strip between the lower and the upper edges of a polygon.
@@ -254,27 +262,38 @@ mod tests {
         assert_eq!(slanted.y_upper, [2.0, 4.0, 2.0]);
     }
 
+    fn plane(layers: Vec<Layer>) -> Plane {
+        let (x_label, y_label) = ("x".to_owned(), "y".to_owned());
+        Plane { title: String::new(), x_label, y_label, x: [0.0, 1.0], y: [0.0, 1.0], layers, size: Plane::SQUARE }
+    }
+
+    #[test]
+    fn a_value_that_two_layers_have_is_put_on_its_line_once() {
+        let field = Field::new(vec![0.0, 1.0], vec![0.0, 1.0], vec![vec![0.0, 1.0], vec![1.0, 2.0]]).unwrap();
+        let layer = Layer::Levels { field, known: vec![vec![true; 2]; 2], label: "equal".to_owned() };
+        let heights = |layers: Vec<Layer>| {
+            let scene = plane(layers).sketch().scene;
+            let height = |element: &Primitive| match element {
+                Primitive::Text { y, content, .. } if content == "1.0" => Some(*y),
+                _ => None,
+            };
+            scene.elements.iter().filter_map(height).collect::<Vec<_>>()
+        };
+        let [once, twice] = [vec![layer.clone()], vec![layer.clone(), layer]].map(heights);
+        assert!(!once.is_empty());
+        assert!(twice.iter().all(|y| once.contains(y)), "{twice:?} {once:?}");
+    }
+
     #[test]
     fn arrows_and_colours_are_named_as_they_are_drawn() {
-        let field = Field { x: vec![0.0, 1.0], y: vec![0.0, 1.0], values: vec![vec![0.0, 1.0], vec![1.0, 2.0]] };
+        let field = Field::new(vec![0.0, 1.0], vec![0.0, 1.0], vec![vec![0.0, 1.0], vec![1.0, 2.0]]).unwrap();
         let (color, width, scale) = ("#d55e00", 1.0, 1.0);
         let arrows =
             Layer::Arrows { arrows: vec![(0.2, 0.2, 0.5, 0.5)], color, scale, width, label: Some("flow".to_owned()) };
         let stroke = Stroke { color: "#000000", width, dash: Dash::Solid };
         let path = Layer::Path { points: vec![(0.0, 0.0), (1.0, 1.0)], stroke, label: Some("way".to_owned()) };
         let layers = vec![Layer::Colors { field, name: "φ".to_owned(), range: None }, path, arrows];
-        let (title, size) = (String::new(), Plane::SQUARE);
-        let scene = Plane {
-            title,
-            x_label: "x".to_owned(),
-            y_label: "y".to_owned(),
-            x: [0.0, 1.0],
-            y: [0.0, 1.0],
-            layers,
-            size,
-        }
-        .sketch()
-        .scene;
+        let scene = plane(layers).sketch().scene;
         let after = |name: &str| {
             let named = |element: &Primitive| matches!(element, Primitive::Text { content, .. } if content == name);
             let at = scene.elements.iter().position(named).unwrap();

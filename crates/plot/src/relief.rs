@@ -43,9 +43,10 @@ impl Panel for Relief {
         let corners = corners.with_x_label(y_label).with_y_label(x_label).with_z_label(z_label);
         let corners = corners.with_z_axis_right(false);
         let mut plots = vec![Plot::Scatter3D(corners)];
-        if let Some(Field { x, y, values }) = &self.surface {
+        if let Some(field) = &self.surface {
+            let (x, y, values) = (field.x(), field.y(), field.values());
             let columns = (0..x.len()).map(|column| values.iter().map(|row| row[column]).collect()).collect();
-            let surface = Surface3DPlot::new(columns).with_x_coords(y.clone()).with_y_coords(x.clone());
+            let surface = Surface3DPlot::new(columns).with_x_coords(y.to_vec()).with_y_coords(x.to_vec());
             plots.push(Plot::Surface3D(surface.with_z_colormap(heights()).with_wireframe_width(0.25)));
         }
         if !self.dots.is_empty() {

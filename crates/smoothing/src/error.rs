@@ -15,6 +15,9 @@ pub enum SmoothingError {
         /// What the value must satisfy.
         requirement: &'static str,
     },
+    /// No degree of the polynomials is named.
+    #[error("degrees is empty, so that no polynomial can be fitted; name one or more, 0 or 1 among them")]
+    NoDegrees,
     /// The movements themselves are not valid.
     #[error(transparent)]
     Motion(#[from] MotionError),

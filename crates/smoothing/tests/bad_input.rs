@@ -26,7 +26,9 @@ fn refuses(smoother: &Smoother, field: &str) {
 #[test]
 fn parameters_of_the_smoother() {
     let plain = Smoother::default();
-    for degrees in [vec![], vec![2, 3], vec![1, 8]] {
+    let empty = Smoother { degrees: vec![], ..plain.clone() };
+    assert_eq!(empty.smooth(&demonstrations(wave(1.0))).unwrap_err(), SmoothingError::NoDegrees);
+    for degrees in [vec![2, 3], vec![1, 8]] {
         refuses(&Smoother { degrees, ..plain.clone() }, "degrees");
     }
     for longest_window in [0, 1, 2] {

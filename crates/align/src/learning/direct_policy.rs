@@ -1,11 +1,11 @@
 use lwpr::StandardisedModel;
-use motion::{LearntPolicy, Policy};
+use motion::{Channel, LearntPolicy, Policy};
 use nalgebra::{DVectorView, DVectorViewMut};
 use serde::{Deserialize, Serialize};
 
 use super::policy_record::{Format, PolicyRecord};
 use super::regression::support;
-use crate::{AlignError, Label, Origin};
+use crate::{AlignError, Origin};
 
 /// The policy of direct policy learning.
 ///
@@ -45,9 +45,9 @@ impl DirectPolicy {
     /// The same policy with names and units of its dimensions, n of them or none.
     ///
     /// # Errors
-    /// [`AlignError::Labels`] if there is not one for each dimension.
-    pub fn with_labels(self, labels: Vec<Label>) -> Result<Self, AlignError> {
-        let origin = self.origin.with_labels(labels, self.regression.n_in())?;
+    /// [`AlignError::Channels`] if there is not one for each dimension.
+    pub fn with_channels(self, channels: Vec<Channel>) -> Result<Self, AlignError> {
+        let origin = self.origin.with_channels(channels, self.regression.n_in())?;
         Ok(DirectPolicy { origin, ..self })
     }
 }

@@ -1,32 +1,22 @@
-use lwpr::LwprParams;
 use motion::{Demonstrations, LearnError, Learner, LearntPolicy, SampleIndex, SampleSet, Trajectory};
 use nalgebra::DMatrix;
 use rand::Rng;
 use serde::{Deserialize, Serialize};
 
-use super::regression::{default_params, fit};
 use crate::checks::one_context;
-use crate::{AlignError, DirectPolicy, Origin};
+use crate::{AlignError, DirectPolicy, LwprRegressor, Origin};
 
 /// Direct policy learning, the naive baseline: regression of the observed velocities on the states, ignoring constraints.
 ///
 /// It learns from all trajectories: the recorded velocities, or else u_i = (x_{i+1} − x_i) / δt for all samples but the
 /// last.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
+///
+/// It is stored as its regressor is.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(transparent)]
 pub struct DirectPolicyLearning {
-    /// Parameters of LWPR; defaults and norms as in [`LwprRegressor::params`](crate::LwprRegressor::params).
-    pub params: LwprParams,
-    /// How often all samples are learnt, each time in a fresh random order; 10 by default.
-    pub passes: usize,
-    /// Receptive fields take part in a prediction if their activation exceeds this; in [0, 1), 1e-3 by default.
-    pub cutoff: f64,
-}
-
-impl Default for DirectPolicyLearning {
-    fn default() -> Self {
-        DirectPolicyLearning { params: default_params(), passes: 10, cutoff: 1e-3 }
-    }
+    /// The regression of the velocities.
+    pub regressor: LwprRegressor,
 }
 
 impl DirectPolicyLearning {
@@ -42,7 +32,7 @@ impl DirectPolicyLearning {
     ) -> Result<DirectPolicy, AlignError> {
         one_context(demonstrations)?;
         let (states, velocities) = observed(demonstrations, held_out);
-        let regression = fit(&self.params, self.passes, self.cutoff, &states, &velocities, rng)?;
+        let regression = self.regressor.regression(&states, &velocities, rng)?;
         Ok(DirectPolicy::new(regression, Origin::new(demonstrations)))
     }
 }

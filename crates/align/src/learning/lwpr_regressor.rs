@@ -1,12 +1,13 @@
-use lwpr::LwprParams;
+use lwpr::{LwprParams, StandardisedModel, Training};
 use nalgebra::{DMatrix, DVector};
 use rand::Rng;
 use serde::{Deserialize, Serialize};
 
-use super::regression::{default_params, fit};
+use super::regression::spread;
 use crate::{AlignError, GlobalPotential, Regressor};
 
-/// Learns a potential (23) by locally weighted projection regression, from values that are centred.
+/// Learns by locally weighted projection regression, from values that are centred: a potential (23), or velocities in
+/// [`DirectPolicyLearning`](crate::DirectPolicyLearning).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct LwprRegressor {
@@ -22,7 +23,29 @@ pub struct LwprRegressor {
 
 impl Default for LwprRegressor {
     fn default() -> Self {
-        LwprRegressor { params: default_params(), passes: 10, cutoff: 1e-3 }
+        // The paper's tables come out with LWPR's own on undivided values: narrower fields (`init_d` 25), fewer of them (`w_gen`
+        // 0.1), hardly a penalty (1e-6).
+        let params = LwprParams { init_d: 10.0, w_gen: 0.5, penalty: 1e-5, ..LwprParams::default() };
+        LwprRegressor { params, passes: 10, cutoff: 1e-3 }
+    }
+}
+
+impl LwprRegressor {
+    /// Learns `outputs` (n_out, M) from `states` (n, M), one column a sample.
+    pub(crate) fn regression(
+        &self,
+        states: &DMatrix<f64>,
+        outputs: &DMatrix<f64>,
+        rng: &mut dyn Rng,
+    ) -> Result<StandardisedModel, AlignError> {
+        if states.ncols() == 0 {
+            return Err(AlignError::NoSamples);
+        }
+        let LwprRegressor { params, passes, cutoff } = self;
+        let norm_in = params.norm_in.clone().unwrap_or_else(|| DVector::repeat(states.nrows(), spread(states)));
+        let params = LwprParams { norm_in: Some(norm_in), ..params.clone() };
+        let training = Training { params, passes: *passes, cutoff: *cutoff };
+        Ok(training.fit(states.as_view(), outputs.as_view(), rng)?)
     }
 }
 
@@ -37,6 +60,6 @@ impl Regressor for LwprRegressor {
         rng: &mut dyn Rng,
     ) -> Result<GlobalPotential, AlignError> {
         let outputs = DMatrix::from_row_slice(1, values.len(), values.as_slice());
-        fit(&self.params, self.passes, self.cutoff, states, &outputs, rng).map(GlobalPotential::new)
+        self.regression(states, &outputs, rng).map(GlobalPotential::new)
     }
 }

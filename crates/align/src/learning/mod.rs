@@ -16,7 +16,7 @@ pub use direct_policy::DirectPolicy;
 pub use direct_policy_learning::DirectPolicyLearning;
 pub use global_potential::GlobalPotential;
 pub use lwpr_regressor::LwprRegressor;
-pub use origin::{Label, Origin};
+pub use origin::Origin;
 pub use potential_policy::PotentialPolicy;
 pub use potential_policy_learning::PotentialPolicyLearning;
 pub use regressor::Regressor;

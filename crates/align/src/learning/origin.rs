@@ -1,17 +1,7 @@
-use motion::Demonstrations;
+use motion::{Channel, Demonstrations};
 use serde::{Deserialize, Serialize};
 
 use crate::AlignError;
-
-/// Name and unit of one dimension of the state.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Label {
-    /// Its name: `x`, `l_elbow`.
-    pub name: String,
-    /// Its unit: `m`, `rad`; the action has this unit per second.
-    pub unit: String,
-}
 
 /// Summary of a policy's training data, stored with the policy. It has no effect on predictions.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -26,7 +16,8 @@ pub struct Origin {
     /// Warnings, one sentence each.
     pub warnings: Vec<String>,
     /// Name and unit of each dimension of the state, n of them; empty if none were given.
-    pub labels: Vec<Label>,
+    #[serde(rename = "labels")]
+    pub channels: Vec<Channel>,
 }
 
 impl Origin {
@@ -36,16 +27,16 @@ impl Origin {
             n_trajectories: demonstrations.n_trajectories(),
             kept: None,
             warnings: Vec::new(),
-            labels: Vec::new(),
+            channels: Vec::new(),
         }
     }
 
     /// With names and units of `dim` dimensions, or none.
-    pub(crate) fn with_labels(self, labels: Vec<Label>, dim: usize) -> Result<Self, AlignError> {
-        if labels.is_empty() || labels.len() == dim {
-            return Ok(Origin { labels, ..self });
+    pub(crate) fn with_channels(self, channels: Vec<Channel>, dim: usize) -> Result<Self, AlignError> {
+        if channels.is_empty() || channels.len() == dim {
+            return Ok(Origin { channels, ..self });
         }
-        Err(AlignError::Labels { found: labels.len(), expected: dim })
+        Err(AlignError::Channels { found: channels.len(), expected: dim })
     }
 
     /// What is wrong with it as that of a policy of so many dimensions.
@@ -58,7 +49,10 @@ impl Origin {
             (self.time_step > 0.0 && self.time_step.is_finite(), "the time step is not positive and finite"),
             (self.n_trajectories > 0, "it was learnt from no trajectory"),
             (kept.is_none_or(ascending), "the kept trajectories are not ascending numbers of those seen"),
-            (self.labels.is_empty() || self.labels.len() == dim, "the number of labels is not that of the dimensions"),
+            (
+                self.channels.is_empty() || self.channels.len() == dim,
+                "the number of labels is not that of the dimensions",
+            ),
         ];
         checks.into_iter().find(|(fine, _)| !fine).map_or(Ok(()), |(_, reason)| Err(reason))
     }

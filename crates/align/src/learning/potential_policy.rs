@@ -1,10 +1,10 @@
-use motion::{LearntPolicy, NegativeGradient, Policy, Potential};
+use motion::{Channel, LearntPolicy, NegativeGradient, Policy, Potential};
 use nalgebra::{DVectorView, DVectorViewMut};
 use serde::{Deserialize, Serialize};
 
 use super::policy_record::{Format, PolicyRecord};
 use super::regression::support;
-use crate::{AlignError, GlobalPotential, Label, Origin};
+use crate::{AlignError, GlobalPotential, Origin};
 
 /// The policy π̂(x) = −∇f(x) of a potential f that was learnt from aligned demonstrations; the gradient is that of the
 /// predictor itself.
@@ -46,9 +46,9 @@ impl PotentialPolicy {
     /// The same policy with names and units of its dimensions, n of them or none.
     ///
     /// # Errors
-    /// [`AlignError::Labels`] if there is not one for each dimension.
-    pub fn with_labels(self, labels: Vec<Label>) -> Result<Self, AlignError> {
-        let origin = self.origin.with_labels(labels, self.descent.dim())?;
+    /// [`AlignError::Channels`] if there is not one for each dimension.
+    pub fn with_channels(self, channels: Vec<Channel>) -> Result<Self, AlignError> {
+        let origin = self.origin.with_channels(channels, self.descent.dim())?;
         Ok(PotentialPolicy { origin, ..self })
     }
 }

@@ -1,37 +1,11 @@
-//! LWPR as both learners use it.
+//! What both learners need of LWPR: one length for all dimensions, and support.
 
-use lwpr::{LwprParams, StandardisedModel, Training};
+use lwpr::StandardisedModel;
 use motion::standard_deviation;
-use nalgebra::{DMatrix, DVector, DVectorView};
-use rand::Rng;
-
-use crate::AlignError;
+use nalgebra::{DMatrix, DVectorView};
 
 /// Dimensions that vary by less than this share of the one that varies most are idle.
 const IDLE: f64 = 1e-3;
-
-/// Good parameters to start from, for values that are divided by their standard deviation. The paper's tables come out with
-/// LWPR's own on undivided values: narrower fields (`init_d` 25), fewer of them (`w_gen` 0.1), hardly a penalty (1e-6).
-pub(crate) fn default_params() -> LwprParams {
-    LwprParams { init_d: 10.0, w_gen: 0.5, penalty: 1e-5, ..LwprParams::default() }
-}
-
-/// Learns `outputs` (n_out, M) from `states` (n, M), one column a sample.
-pub(crate) fn fit(
-    params: &LwprParams,
-    passes: usize,
-    cutoff: f64,
-    states: &DMatrix<f64>,
-    outputs: &DMatrix<f64>,
-    rng: &mut dyn Rng,
-) -> Result<StandardisedModel, AlignError> {
-    if states.ncols() == 0 {
-        return Err(AlignError::NoSamples);
-    }
-    let norm_in = params.norm_in.clone().unwrap_or_else(|| DVector::repeat(states.nrows(), spread(states)));
-    let training = Training { params: LwprParams { norm_in: Some(norm_in), ..params.clone() }, passes, cutoff };
-    Ok(training.fit(states.as_view(), outputs.as_view(), rng)?)
-}
 
 /// The largest activation of a receptive field at a state, (n), for the output that has least of it; 0 if no field takes
 /// part in the prediction of some output.
@@ -47,7 +21,7 @@ pub(crate) fn support(model: &StandardisedModel, state: DVectorView<'_, f64>) ->
 ///
 /// Distances between states are Euclidean in the alignment and in the policy's gradient; receptive fields that are round
 /// in the same sense keep it so.
-fn spread(states: &DMatrix<f64>) -> f64 {
+pub(crate) fn spread(states: &DMatrix<f64>) -> f64 {
     let deviations: Vec<f64> = states.row_iter().map(|row| standard_deviation(row.iter().copied())).collect();
     let largest = deviations.iter().copied().fold(0.0, f64::max);
     if largest == 0.0 {

@@ -86,14 +86,14 @@ pub(crate) fn fields(seed: u64) -> anyhow::Result<Fields> {
     let logarithm = |value: f64| rounded(value.max(LEAST_ERROR).log10(), 3);
     Ok(Fields {
         movements: recordings.iter().map(points).collect(),
-        contours: on_grid(EXTENT, STEPS, |x| rounded(potential.value(x.as_view()), 5)),
+        contours: on_grid(EXTENT, STEPS, |x| rounded(potential.value(x.as_view()), 5))?,
         truth: actions(&truth, LONGEST),
         naive: actions(&*naive, LONGEST),
         policy_align: actions(&policy_align, LONGEST),
         direct_gp: actions(both.direct(), LONGEST),
         slope_gp: actions(both.slope(), LONGEST),
-        expected: on_grid(EXTENT, STEPS, |x| logarithm(expected(x))),
-        error: on_grid(EXTENT, STEPS, |x| logarithm(error(x))),
+        expected: on_grid(EXTENT, STEPS, |x| logarithm(expected(x)))?,
+        error: on_grid(EXTENT, STEPS, |x| logarithm(error(x)))?,
     })
 }
 
@@ -130,7 +130,7 @@ pub(crate) fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
 
 /// From the least value of all fields to the largest: one scale of colours for all.
 fn range_of<'f>(fields: impl IntoIterator<Item = &'f Field>) -> [f64; 2] {
-    let values = fields.into_iter().flat_map(|field| field.values.iter().flatten());
+    let values = fields.into_iter().flat_map(|field| field.values().iter().flatten());
     values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], &value| [low.min(value), high.max(value)])
 }
 
@@ -140,7 +140,7 @@ mod tests {
 
     #[test]
     fn one_scale_holds_both_fields() {
-        let field = |values: [f64; 2]| Field { x: vec![0.0, 1.0], y: vec![0.0], values: vec![values.to_vec()] };
+        let field = |values: [f64; 2]| Field::new(vec![0.0, 1.0], vec![0.0, 1.0], vec![values.to_vec(); 2]).unwrap();
         assert_eq!(range_of([&field([-6.7, -2.5]), &field([-8.0, -2.9])]), [-8.0, -2.5]);
     }
 }

@@ -248,7 +248,8 @@ impl Sources {
         if let Some(number) = sound::beyond(value, D::LARGEST) {
             bail!("figure data {id} is damaged: it holds the number {number:e}; {AGAIN}");
         }
-        let document = D::deserialize(value).with_context(|| format!("figure data {id} has another form; {AGAIN}"))?;
+        let document = D::deserialize(value)
+            .with_context(|| format!("figure data {id} is damaged or has another form; {AGAIN}"))?;
         document.check().map_err(|error| anyhow!("figure data {id} is damaged: {error:#}; {AGAIN}"))?;
         Ok(document)
     }

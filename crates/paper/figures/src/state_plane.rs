@@ -2,7 +2,7 @@
 
 use motion::Policy;
 use nalgebra::{DVector, dvector};
-use plot::{Field, Layer, Plane};
+use plot::{Field, Layer, Plane, PlotError};
 
 use crate::who::TRUTH;
 use crate::{Who, rounded};
@@ -25,10 +25,10 @@ pub(super) fn state_plane(title: &str, extent: f64, layers: Vec<Layer>, size: (f
 }
 
 /// A function of the state from −`extent` to `extent`, with so many steps to either side of 0.
-pub(super) fn on_grid(extent: f64, steps: i32, value: impl Fn(&DVector<f64>) -> f64) -> Field {
+pub(super) fn on_grid(extent: f64, steps: i32, value: impl Fn(&DVector<f64>) -> f64) -> Result<Field, PlotError> {
     let grid: Vec<f64> = (-steps..=steps).map(|i| extent * f64::from(i) / f64::from(steps)).collect();
     let values = grid.iter().map(|&y| grid.iter().map(|&x| value(&dvector![x, y])).collect()).collect();
-    Field { x: grid.clone(), y: grid, values }
+    Field::new(grid.clone(), grid, values)
 }
 
 /// Arrows in a row of their grid, and from one to the next.

@@ -1,7 +1,7 @@
 use kuva::render::color::Color;
 use kuva::render::render::{Primitive, Scene, TextAnchor};
 
-use crate::drawing::elements::{area, line};
+use crate::drawing::elements::{area, arrowhead, line};
 use crate::sign::shape;
 use crate::{Mark, Panel, Sketch, Stroke};
 
@@ -96,15 +96,12 @@ fn drawn(thing: &Thing) -> Vec<Primitive> {
 
 /// Shaft and head; a head is no longer than most of its arrow.
 fn arrow(from: (f64, f64), to: (f64, f64), color: &str, width: f64) -> Vec<Primitive> {
-    let (u, v) = (to.0 - from.0, to.1 - from.1);
-    let length = u.hypot(v);
+    let length = (to.0 - from.0).hypot(to.1 - from.1);
     if length < 1.0 {
         return vec![];
     }
     let head = (2.0 * width + 4.5).min(0.65 * length);
-    let (along, across) = (head / length, 0.45 * head / length);
-    let foot = (to.0 - along * u, to.1 - along * v);
-    let corners = [to, (foot.0 - across * v, foot.1 + across * u), (foot.0 + across * v, foot.1 - across * u)];
+    let (foot, corners) = arrowhead(from, to, head, 0.45 * head);
     vec![line(from, foot, Color::from(color), width), area(&corners, Color::from(color))]
 }
 

@@ -32,6 +32,16 @@ pub(crate) fn area(corners: &[Place], fill: Color) -> Primitive {
     Primitive::Path(Box::new(PathData { d, fill, stroke, stroke_width, opacity: None, stroke_dasharray: None }))
 }
 
+/// The flat head at the end of an arrow, so long and half so wide, pixels: its foot, where the shaft ends, and its corners from
+/// the tip on. The arrow is not empty.
+pub(crate) fn arrowhead(from: Place, to: Place, length: f64, half_width: f64) -> (Place, [Place; 3]) {
+    let (u, v) = (to.0 - from.0, to.1 - from.1);
+    let arrow = u.hypot(v);
+    let (along, across) = (length / arrow, half_width / arrow);
+    let foot = (to.0 - along * u, to.1 - along * v);
+    (foot, [to, (foot.0 - across * v, foot.1 + across * u), (foot.0 + across * v, foot.1 - across * u)])
+}
+
 /// A rectangle without an outline, from its upper left corner.
 pub(crate) fn rectangle((x, y): Place, (width, height): Place, fill: Color, opacity: f64) -> Primitive {
     Primitive::Rect { x, y, width, height, fill, stroke: None, stroke_width: None, opacity: Some(opacity) }

@@ -1,10 +1,9 @@
 //! Samples of lines and arrows before their names: the plotting crate draws a line there, too short for dashes and
 //! without a head.
 
-use kuva::render::color::Color;
 use kuva::render::render::{Primitive, Scene};
 
-use crate::drawing::elements::area;
+use crate::drawing::elements::{area, arrowhead};
 
 /// Pixels from the sample's ends to the name.
 const FROM: f64 = 26.0;
@@ -29,8 +28,9 @@ pub(crate) fn draw(names: &[(&str, Sample)], scene: &mut Scene) {
         if let (Primitive::Line { x1, x2, y1, stroke, .. }, Some((name_at, sample))) = (&mut element, named.take()) {
             (*x1, *x2) = (name_at - FROM, name_at - TO);
             if sample == Sample::Arrow {
-                head = Some(arrowhead((*x2, *y1), stroke));
-                *x2 -= HEAD.0;
+                let (foot, [tip, below, above]) = arrowhead((*x1, *y1), (*x2, *y1), HEAD.0, HEAD.1);
+                head = Some(area(&[tip, above, below], stroke.clone()));
+                *x2 = foot.0;
             }
         }
         if let Primitive::Text { x, content, .. } = &element {
@@ -39,10 +39,4 @@ pub(crate) fn draw(names: &[(&str, Sample)], scene: &mut Scene) {
         drawn.extend([Some(element), head].into_iter().flatten());
     }
     scene.elements = drawn;
-}
-
-/// The head of an arrow to the right.
-fn arrowhead((x, y): (f64, f64), color: &Color) -> Primitive {
-    let (length, half) = HEAD;
-    area(&[(x, y), (x - length, y - half), (x - length, y + half)], color.clone())
 }

@@ -15,7 +15,7 @@ pub(crate) fn instead_of_squares(field: &Field, colors: [f64; 2], number: usize,
     let Primitive::RectBatch { x, y, .. } = &scene.elements[at] else { return None };
     let ([left, right], [top, _]) = (range(x), range(y));
     // Two squares are as wide as the field; one unit is as long on either axis.
-    let width = DOTS * (field.x.len() - 1);
+    let width = DOTS * (field.x().len() - 1);
     let side = 2.0 * (right - left) / width as f64;
     let ends = [Primitive::GroupEnd, Primitive::GroupEnd];
     scene.elements.splice(at..=at, [Sketch::backdrop(), Sketch::group(number)].into_iter().chain(ends));
@@ -29,8 +29,9 @@ pub(crate) fn range<'a>(values: impl IntoIterator<Item = &'a f64>) -> [f64; 2] {
 }
 
 /// Colours of the dots, row by row from above; of values from the darkest to the lightest.
-fn dots(Field { x, y, values }: &Field, [low, high]: [f64; 2]) -> Vec<[u8; 4]> {
-    let [width, rows] = [x, y].map(|grid| DOTS * (grid.len() - 1));
+fn dots(field: &Field, [low, high]: [f64; 2]) -> Vec<[u8; 4]> {
+    let values = field.values();
+    let [width, rows] = [field.x(), field.y()].map(|grid| DOTS * (grid.len() - 1));
     let place = |dot: usize| {
         let along = (dot as f64 + 0.5) / DOTS as f64;
         (along as usize, along.fract())
@@ -59,7 +60,7 @@ mod tests {
     fn colours_go_evenly_from_the_lowest_place_to_the_highest() {
         let grid: Vec<f64> = (0..5).map(f64::from).collect();
         let values = grid.iter().map(|y| grid.iter().map(|_| *y).collect()).collect();
-        let field = Field { x: grid.clone(), y: grid, values };
+        let field = Field::new(grid.clone(), grid, values).unwrap();
         let dots = dots(&field, [0.0, 4.0]);
         assert_eq!(dots.len(), 12 * 12);
         let column: Vec<_> = dots.iter().step_by(12).collect();
@@ -73,7 +74,7 @@ mod tests {
 
     #[test]
     fn a_level_field_has_the_colour_in_the_middle_and_unknown_places_none() {
-        let of = |value| Field { x: vec![0.0, 1.0], y: vec![0.0, 1.0], values: vec![vec![value; 2]; 2] };
+        let of = |value| Field::new(vec![0.0, 1.0], vec![0.0, 1.0], vec![vec![value; 2]; 2]).unwrap();
         let [r, g, b] = height(0.5);
         assert!(dots(&of(3.0), [3.0, 3.0]).iter().all(|dot| *dot == [r, g, b, 255]));
         assert!(dots(&of(f64::NAN), [0.0, 1.0]).iter().all(|dot| dot[3] == 0));

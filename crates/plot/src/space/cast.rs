@@ -31,18 +31,18 @@ pub(super) fn bodies(items: &[Item], view: &View) -> Vec<Body> {
 
 /// A picture of the bodies on a panel of this size, pixels; none where there are no bodies.
 pub(super) fn raster(bodies: &[Body], size: (f64, f64)) -> Option<Raster> {
-    let mut canvas = Canvas::over(Window::around(bodies, size)?);
+    let mut film = Film::over(Window::around(bodies, size)?);
     let (opaque, veils): (Vec<&Body>, Vec<&Body>) = bodies.iter().partition(|body| body.tint.opacity >= 1.0);
     for body in opaque {
-        for (at, depth, color) in canvas.window.samples_of(body) {
-            if depth > canvas.depths[at] {
-                canvas.depths[at] = depth;
-                canvas.colors[at] = color;
+        for (at, depth, color) in film.window.samples_of(body) {
+            if depth > film.depths[at] {
+                film.depths[at] = depth;
+                film.colors[at] = color;
             }
         }
     }
-    canvas.veil(&veils);
-    Some(canvas.raster())
+    film.veil(&veils);
+    Some(film.raster())
 }
 
 /// A part of the panel: its corner in pixels, its sides in samples.
@@ -149,17 +149,17 @@ fn neighbours(at: usize, width: usize, len: usize) -> impl Iterator<Item = usize
     [left, right, above, below].into_iter().flatten()
 }
 
-/// Samples: what is seen, red, green, blue and how much of it there is, and how near that is.
-struct Canvas {
+/// The samples of a window: what is seen, red, green, blue and how much of it there is, and how near that is.
+struct Film {
     window: Window,
     colors: Vec<[f32; 4]>,
     depths: Vec<f32>,
 }
 
-impl Canvas {
-    fn over(window: Window) -> Canvas {
+impl Film {
+    fn over(window: Window) -> Film {
         let n = window.width * window.height;
-        Canvas { window, colors: vec![[0.0; 4]; n], depths: vec![f32::NEG_INFINITY; n] }
+        Film { window, colors: vec![[0.0; 4]; n], depths: vec![f32::NEG_INFINITY; n] }
     }
 
     /// Lays what can be seen through over what is behind it, the farther first.

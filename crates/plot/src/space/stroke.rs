@@ -2,14 +2,14 @@
 
 use kuva::render::color::Color;
 use kuva::render::render::Scene;
-use nalgebra::{Point2, Point3, Vector2};
+use nalgebra::{Point2, Point3};
 
 use super::cast::{Body, seen};
 use super::item::Item;
 use super::shade::{Rgb, color, rgb};
 use super::view::View;
 use crate::drawing::dashes::dashed;
-use crate::drawing::elements::{area, disc, polyline};
+use crate::drawing::elements::{area, arrowhead, disc, polyline};
 use crate::{Dash, Stroke};
 
 /// Whether it is hidden is asked at steps of so many pixels.
@@ -78,11 +78,11 @@ fn arrow(from: Point3<f64>, to: Point3<f64>, style: &Stroke, bodies: &[Body], sc
     let head = head(style).min(0.6 * length);
     let foot = to - (to - from) * (head / length);
     line(&[from, foot], style, bodies, scene);
-    let aside = Vector2::new(from.y - to.y, to.x - from.x) * (0.38 * head / length);
     let middle = nalgebra::center(&foot, &to);
     if let Some(color) = seen(rgb(style.color), &middle.xy(), middle.z + LIFT, bodies) {
-        let corners = [to.xy(), foot.xy() + aside, foot.xy() - aside];
-        scene.add(area(&corners.map(|corner| (corner.x, corner.y)), self::color(color)));
+        let (_, corners) = arrowhead((from.x, from.y), (to.x, to.y), head, 0.38 * head);
+        scene.add(area(&corners, self::color(color)));
+        let corners = corners.map(|(x, y)| Point2::new(x, y));
         scene.add(polyline(&[corners[0], corners[1], corners[2], corners[0]], self::color(color), 0.9));
     }
 }

@@ -1,4 +1,4 @@
-use motion::{Demonstrations, Episode, Times, Verdict, upper_median};
+use motion::{Demonstrations, Episode, Times, Verdict, upper_median, whole_step};
 
 use crate::PrepareError;
 use crate::notes::{Notes, and_more};
@@ -7,8 +7,6 @@ use crate::options::PrepareOptions;
 
 /// Stamps that differ by less than this share of a step are even.
 const EVEN: f64 = 0.01;
-/// A time step this near to a whole rate is that rate.
-const WHOLE: f64 = 1e-3;
 /// Longer steps than this are hardly seconds.
 pub(crate) const SLOW: f64 = 5.0;
 /// A step over so many usual ones is a gap.
@@ -43,7 +41,7 @@ pub(crate) fn decide(
         } else {
             // The mean forgets how stamps were rounded.
             let mean = steps.iter().sum::<f64>() / steps.len().max(1) as f64;
-            episode.times = Times::Even { step: whole(mean), len: episode.n_samples() };
+            episode.times = Times::Even { step: whole_step(mean), len: episode.n_samples() };
         }
         gaps += long.len();
         if let (None, Some(&i)) = (&first, long.first()) {
@@ -100,14 +98,4 @@ pub(crate) fn doubt(demonstrations: &Demonstrations, notes: &mut Notes) {
             short(usual / 1000.0)
         ),
     );
-}
-
-/// 1/k s or k ms where that is as near as stamps are usually rounded.
-fn whole(time_step: f64) -> f64 {
-    let near = |candidate: f64| (candidate > 0.0 && (candidate / time_step - 1.0).abs() < WHOLE).then_some(candidate);
-    let rate = near(1.0 / (1.0 / time_step).round()).filter(|step| step.is_finite());
-    let milliseconds = near((time_step * 1000.0).round() / 1000.0);
-    let off = |step: &f64| (step - time_step).abs();
-    let nearest = [rate, milliseconds].into_iter().flatten().min_by(|a, b| off(a).total_cmp(&off(b)));
-    nearest.unwrap_or(time_step)
 }

@@ -83,11 +83,11 @@ impl Smoother {
     }
 
     fn check(&self) -> Result<(), SmoothingError> {
-        let (degrees, switch) = (self.degrees.len(), self.switch_probability);
-        require(degrees > 0, "degrees", 0.0, "name at least one degree")?;
+        let (Some(&lowest), switch) = (self.degrees.iter().min(), self.switch_probability) else {
+            return Err(SmoothingError::NoDegrees);
+        };
         let highest = self.columns() - 1;
         require(highest < MAX_COLUMNS, "degrees", highest as f64, "be at most 7")?;
-        let lowest = self.degrees.iter().copied().min().unwrap_or(0);
         require(lowest < 2, "degrees", lowest as f64, "include 0 or 1, which windows of two samples need")?;
         require(self.longest_window >= 3, "longest_window", self.longest_window as f64, "be at least 3")?;
         require(switch > 0.0 && switch < 1.0, "switch_probability", switch, "lie between 0 and 1")?;

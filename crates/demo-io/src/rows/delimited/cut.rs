@@ -27,7 +27,7 @@ pub(crate) fn cut(
     }
     let Some(cutting) = beginning.table(input)?.cutting() else { return Ok(Vec::new()) };
     let Beginning { dialect, mut records, head, .. } = beginning;
-    let (mut labels, mut cuts) = (Labels::new(cutting), Cuts::new(most, of));
+    let (mut episodes, mut cuts) = (Episodes::new(cutting), Cuts::new(most, of));
     let (mut head, mut record) = (head.into_iter(), ByteRecord::new());
     loop {
         let line = match head.next() {
@@ -41,20 +41,20 @@ pub(crate) fn cut(
             },
         };
         let byte = records.byte_of(&record);
-        match (labels.look(&record, &dialect), labels.seen.len().saturating_sub(1)) {
-            (Label::Same, _) => {}
-            (Label::New, movements) => match byte.filter(|_| !record[0].starts_with(BYTE_ORDER_MARK)) {
+        match (episodes.look(&record, &dialect), episodes.seen.len().saturating_sub(1)) {
+            (Next::Same, _) => {}
+            (Next::New, movements) => match byte.filter(|_| !record[0].starts_with(BYTE_ORDER_MARK)) {
                 Some(byte) => cuts.push(Start { byte, line, movements }),
                 None if movements == 0 => return Ok(Vec::new()),
                 None => {}
             },
-            (Label::InTheWay, _) => return Ok(Vec::new()),
+            (Next::InTheWay, _) => return Ok(Vec::new()),
         }
     }
 }
 
-/// Labels of episodes so far.
-struct Labels {
+/// Episodes so far, by their labels.
+struct Episodes {
     cutting: Cutting,
     seen: HashSet<String>,
     /// The last record's label, as it is written and as it is meant.
@@ -64,8 +64,8 @@ struct Labels {
     constraint: Option<(Vec<u8>, String)>,
 }
 
-/// What a record's label says.
-enum Label {
+/// What a record is the next of.
+enum Next {
     Same,
     /// A movement begins.
     New,
@@ -73,29 +73,29 @@ enum Label {
     InTheWay,
 }
 
-impl Labels {
-    fn new(cutting: Cutting) -> Labels {
-        Labels { cutting, seen: HashSet::new(), written: Vec::new(), label: String::new(), constraint: None }
+impl Episodes {
+    fn new(cutting: Cutting) -> Episodes {
+        Episodes { cutting, seen: HashSet::new(), written: Vec::new(), label: String::new(), constraint: None }
     }
 
-    fn look(&mut self, record: &ByteRecord, dialect: &Dialect) -> Label {
+    fn look(&mut self, record: &ByteRecord, dialect: &Dialect) -> Next {
         if self.cutting.constraint.is_some_and(|column| self.is_other_constraint(column, record, dialect)) {
-            return Label::InTheWay;
+            return Next::InTheWay;
         }
         let written = &record[self.cutting.episode];
         if !self.seen.is_empty() && written == self.written {
-            return Label::Same;
+            return Next::Same;
         }
         self.written.clear();
         self.written.extend_from_slice(written);
         let mut label = String::new();
         dialect.fields(record).label(self.cutting.episode, &mut label);
         if !self.seen.is_empty() && label == self.label {
-            return Label::Same;
+            return Next::Same;
         }
         self.label.clone_from(&label);
         // More are refused by who reads the whole.
-        if self.seen.insert(label) && self.seen.len() <= MOST_EPISODES { Label::New } else { Label::InTheWay }
+        if self.seen.insert(label) && self.seen.len() <= MOST_EPISODES { Next::New } else { Next::InTheWay }
     }
 
     fn is_other_constraint(&mut self, column: usize, record: &ByteRecord, dialect: &Dialect) -> bool {

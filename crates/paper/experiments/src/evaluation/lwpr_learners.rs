@@ -16,8 +16,7 @@ pub(crate) fn naive(
     demonstrations: &Demonstrations,
     rng: &mut ChaCha8Rng,
 ) -> anyhow::Result<Box<dyn LearntPolicy>> {
-    let LwprRegressor { params, passes, cutoff } = lwpr.clone();
-    let naive = DirectPolicyLearning { params, passes, cutoff };
+    let naive = DirectPolicyLearning { regressor: lwpr.clone() };
     naive.learn(demonstrations, &[], rng).map_err(anyhow::Error::from_boxed)
 }
 

@@ -36,12 +36,12 @@ pub const HELD_OUT: f64 = 0.2;
 impl Recipe {
     /// The regression on aligned potentials of `dim` inputs, all divided by `spread`.
     pub(crate) fn regressor(&self, dim: usize, spread: f64) -> LwprRegressor {
-        LwprRegressor { params: self.params_of(dim, spread, 1), passes: self.passes(dim), cutoff: self.cutoff }
+        self.lwpr(dim, spread, 1)
     }
 
     /// The naive learner's regression on observed velocities.
     pub(crate) fn naive(&self, dim: usize, spread: f64) -> DirectPolicyLearning {
-        DirectPolicyLearning { params: self.params_of(dim, spread, dim), passes: self.passes(dim), cutoff: self.cutoff }
+        DirectPolicyLearning { regressor: self.lwpr(dim, spread, dim) }
     }
 
     /// PolicyAlign alone, with this regression; other learners are added to it.
@@ -54,10 +54,12 @@ impl Recipe {
         (self.passes_per_input * dim as f64).ceil() as usize
     }
 
-    fn params_of(&self, dim: usize, spread: f64, n_out: usize) -> LwprParams {
+    /// A regression of `n_out` outputs.
+    fn lwpr(&self, dim: usize, spread: f64, n_out: usize) -> LwprRegressor {
         let [norm_in, norm_out] =
             [(dim, spread), (n_out, self.divisor)].map(|(n, norm)| Some(DVector::repeat(n, norm)));
-        LwprParams { norm_in, norm_out, ..self.params.clone() }
+        let params = LwprParams { norm_in, norm_out, ..self.params.clone() };
+        LwprRegressor { params, passes: self.passes(dim), cutoff: self.cutoff }
     }
 
     /// What is fitted of it, as settings of an experiment whose printed rows are `printed`.

@@ -1,6 +1,6 @@
 //! Section 4.3: 22 joints of a humanoid, one hand in a plane.
 
-use align::{DirectPolicyLearning, PolicyAlign};
+use align::{DirectPolicyLearning, LwprRegressor, PolicyAlign};
 use demo_gen::{HandInPlane, n_leaving_limits};
 use gp::FrontEnd;
 use rand_chacha::ChaCha8Rng;
@@ -59,7 +59,8 @@ pub(crate) fn asimo22() -> anyhow::Result<Experiment> {
 /// Who learns beside PolicyAlign. The naive learner has wider fields than PolicyAlign, with which its error is lower, and fewer
 /// passes.
 fn baselines() -> Baselines {
-    let naive = Some(DirectPolicyLearning { passes: 3, ..Recipe::default().naive(22, 2.2) });
+    let regressor = LwprRegressor { passes: 3, ..Recipe::default().naive(22, 2.2).regressor };
+    let naive = Some(DirectPolicyLearning { regressor });
     Baselines { naive, ..Baselines::of_gaussians(FrontEnd::FiniteDifferences, 1000) }
 }
 

@@ -41,7 +41,7 @@ pub(super) fn policies(
 ) -> anyhow::Result<[Box<dyn Policy>; 4]> {
     // In the table's order.
     let Learnt { aligned, test, policy } = Learnt::from(recordings, rng)?;
-    let naive = DirectPolicyLearning { cutoff: CUTOFF, ..grasp_naive() };
+    let naive = DirectPolicyLearning { regressor: LwprRegressor { cutoff: CUTOFF, ..grasp_naive().regressor } };
     let naive = naive.learn_policy(aligned.demonstrations(), &test.of_all, rng)?;
     let slope = grasp_baselines().slope(aligned.demonstrations(), &test.of_all, &mut separate_stream(rng))?;
     let expert = NegativeGradient(grasp.scene.potential());

@@ -3,7 +3,7 @@
 use constraints::{LinearConstraint, PfaffianConstraint};
 use motion::{NegativeGradient, Policy, Potential};
 use nalgebra::{DVector, DVectorView, DVectorViewMut, dmatrix};
-use plot::{Field, Layer, Mark, Picture, Relief};
+use plot::{Field, Layer, Mark, Picture, PlotError, Relief};
 use serde::{Deserialize, Serialize};
 
 use crate::sound::{Sound, field as sound_field, some};
@@ -89,9 +89,9 @@ pub(crate) fn hills() -> anyhow::Result<Shown> {
         arrows.0.push(arrow(free));
         arrows.1.push(arrow(left));
     }
-    let [maxima, minima] = extrema();
+    let [maxima, minima] = extrema()?;
     Ok(Shown {
-        potential: field(60, |value| rounded(value, 4)),
+        potential: field(60, |value| rounded(value, 4))?,
         unconstrained: arrows.0,
         constrained: arrows.1,
         maxima,
@@ -100,16 +100,17 @@ pub(crate) fn hills() -> anyhow::Result<Shown> {
 }
 
 /// The potential on a square grid with so many steps to a side.
-fn field(steps: i32, kept: impl Fn(f64) -> f64) -> Field {
+fn field(steps: i32, kept: impl Fn(f64) -> f64) -> Result<Field, PlotError> {
     let grid: Vec<f64> = (0..=steps).map(|i| EXTENT * (2.0 * f64::from(i) / f64::from(steps) - 1.0)).collect();
     let value = |x: f64, y: f64| kept(Hills.value(DVector::from_vec(vec![x, y]).as_view()));
     let values = grid.iter().map(|&y| grid.iter().map(|&x| value(x, y)).collect()).collect();
-    Field { x: grid.clone(), y: grid, values }
+    Field::new(grid.clone(), grid, values)
 }
 
 /// Maxima and minima: points of a fine grid that are above, or below, all eight around them.
-fn extrema() -> [Vec<(f64, f64)>; 2] {
-    let Field { x, y, values } = field(400, |value| value);
+fn extrema() -> Result<[Vec<(f64, f64)>; 2], PlotError> {
+    let field = field(400, |value| value)?;
+    let (x, y, values) = (field.x(), field.y(), field.values());
     let (mut maxima, mut minima) = (Vec::new(), Vec::new());
     for row in 1..y.len() - 1 {
         for column in 1..x.len() - 1 {
@@ -122,18 +123,18 @@ fn extrema() -> [Vec<(f64, f64)>; 2] {
             }
         }
     }
-    [maxima, minima]
+    Ok([maxima, minima])
 }
 
 pub(crate) fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
     let shown: Shown = sources.document("figure4")?;
-    let heights = shown.potential.values.iter().flatten();
+    let heights = shown.potential.values().iter().flatten();
     let (lowest, highest) = heights.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &v| (l.min(v), h.max(v)));
     let surface = Relief {
         title: "(a) φ as a surface".to_owned(),
         labels: ["x₁", "x₂", "φ"].map(str::to_owned),
         extent: [(-BOX, -BOX, lowest), (BOX, BOX, highest)],
-        surface: Some(coarse(&shown.potential)),
+        surface: Some(coarse(&shown.potential)?),
         dots: vec![],
         size: (430.0, 408.0),
     };
@@ -143,10 +144,10 @@ pub(crate) fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
 }
 
 /// Every second row and column.
-fn coarse(field: &Field) -> Field {
+fn coarse(field: &Field) -> Result<Field, PlotError> {
     let half = |values: &[f64]| values.iter().copied().step_by(2).collect::<Vec<_>>();
-    let values = field.values.iter().step_by(2).map(|row| half(row)).collect();
-    Field { x: half(&field.x), y: half(&field.y), values }
+    let values = field.values().iter().step_by(2).map(|row| half(row)).collect();
+    Field::new(half(field.x()), half(field.y()), values)
 }
 
 fn layers(shown: &Shown) -> Vec<Layer> {
@@ -210,7 +211,7 @@ mod tests {
 
     #[test]
     fn there_are_three_maxima_and_two_minima() {
-        let [maxima, minima] = extrema();
+        let [maxima, minima] = extrema().unwrap();
         assert_eq!((maxima.len(), minima.len()), (3, 2));
         // Each is one: near it the policy turns away on all sides, or towards it.
         for (points, sign) in [(maxima, 1.0), (minima, -1.0)] {

@@ -51,7 +51,8 @@ pub(crate) fn error_map(model: &Model, prepared: &Prepared) -> Option<Part> {
     // Under the grey, where they would take the colours.
     values.iter_mut().flatten().for_each(|share| *share = share.min(most));
     let name = "σ (%)".to_owned();
-    let field = Field { x: x.clone(), y: y.clone(), values };
+    let field = Field::new(x.clone(), y.clone(), values)
+        .expect("a value at each place of a grid of two rows and columns or more");
     let mut layers = vec![Layer::Colors { field, name, range: Some([0.0, most]) }];
     let [finer_x, finer_y] = [&x, &y].map(|places| finer(places));
     layers.extend(unknown(&finer_x, &finer_y, &picture.known(&policy, &finer_x, &finer_y)));

@@ -115,7 +115,8 @@ impl Picture<'_> {
             let known = finer.iter().step_by(2).map(|row| row.iter().step_by(2).copied().collect()).collect();
             let value = |x: f64, y: f64| potential.value(self.state([x, y]).as_view());
             let values = y.par_iter().map(|&y| x.iter().map(|&x| value(x, y)).collect()).collect();
-            layers.push(Layer::Levels { field: Field { x, y, values }, known, label: "equal potential".to_owned() });
+            let field = Field::new(x, y, values).expect("a value at each of many places");
+            layers.push(Layer::Levels { field, known, label: "equal potential".to_owned() });
         }
         layers.extend(unknown(&finer_x, &finer_y, &finer));
         let named = |at: usize, name: &str| (at == 0).then(|| name.to_owned());

@@ -42,7 +42,7 @@ pub(crate) fn levels(seed: u64) -> anyhow::Result<Levels> {
     Ok(Levels {
         data_set,
         movements: movements(&recordings, &aligned),
-        truth: Field { x: side(), y: side(), values: surface(|x| rounded(system.potential.value(x.as_view()), 5)) },
+        truth: Field::new(side(), side(), surface(|x| rounded(system.potential.value(x.as_view()), 5)))?,
         learnt: surface(|x| {
             (learnt.support(x.as_view()) > 0.0).then(|| rounded(potential.value(x.as_view()) + raise, 5))
         }),
@@ -124,7 +124,7 @@ mod tests {
     fn the_learnt_surface_is_near_the_truth_where_movements_are() {
         let levels = levels(1).unwrap();
         let middle = 10..31;
-        for (truth, learnt) in levels.truth.values[middle.clone()].iter().zip(&levels.learnt[middle.clone()]) {
+        for (truth, learnt) in levels.truth.values()[middle.clone()].iter().zip(&levels.learnt[middle.clone()]) {
             for (truth, learnt) in truth[middle.clone()].iter().zip(&learnt[middle.clone()]) {
                 assert!((truth - learnt.unwrap()).abs() < 0.03, "{truth} {learnt:?}");
             }

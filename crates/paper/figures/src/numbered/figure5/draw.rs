@@ -1,4 +1,4 @@
-use plot::{Field, Picture, Plane, Relief};
+use plot::{Field, Picture, Plane, PlotError, Relief};
 
 use super::{Levels, Movement};
 use crate::state_plane::state_plane;
@@ -28,9 +28,9 @@ pub(crate) fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
             &dots("(b) Local potentials as integrated", |movement| Some(&movement.before)),
             &dots(&after, |movement| movement.after.as_ref()),
         ],
-        &[&surface(&learnt, &levels.learnt()), &surface("(e) True potential", &levels.truth)],
+        &[&surface(&learnt, &levels.learnt()?), &surface("(e) True potential", &levels.truth)],
     ]);
-    Ok(Drawing { picture, tables: vec![local_potentials(&levels), surfaces(&levels)] })
+    Ok(Drawing { picture, tables: vec![local_potentials(&levels), surfaces(&levels)?] })
 }
 
 /// The demonstrations over lines of equal potential; discarded ones as crosses.
@@ -68,12 +68,12 @@ fn local_potentials(levels: &Levels) -> Csv {
     Csv { name: "local", header, rows: levels.movements.iter().enumerate().flat_map(lines).collect() }
 }
 
-fn surfaces(levels: &Levels) -> Csv {
-    let (truth, learnt) = (&levels.truth, levels.learnt());
-    let places = truth.y.iter().enumerate().flat_map(|y| truth.x.iter().enumerate().map(move |x| (x, y)));
+fn surfaces(levels: &Levels) -> Result<Csv, PlotError> {
+    let (truth, learnt) = (&levels.truth, levels.learnt()?);
+    let places = truth.y().iter().enumerate().flat_map(|y| truth.x().iter().enumerate().map(move |x| (x, y)));
     let line = |((column, &x), (row, &y)): ((usize, &f64), (usize, &f64))| {
-        vec![x, y, truth.values[row][column], learnt.values[row][column]]
+        vec![x, y, truth.values()[row][column], learnt.values()[row][column]]
     };
     let header = ["x1", "x2", "truth", "learnt"].map(str::to_owned).into();
-    Csv { name: "surfaces", header, rows: places.map(line).collect() }
+    Ok(Csv { name: "surfaces", header, rows: places.map(line).collect() })
 }

@@ -3,7 +3,7 @@
 pub(crate) mod compute;
 pub(crate) mod draw;
 
-use plot::Field;
+use plot::{Field, PlotError};
 use serde::{Deserialize, Serialize};
 
 use crate::sound::{Sound, as_many, field, grid, some};
@@ -34,14 +34,15 @@ impl Sound for Levels {
             }
         }
         field("truth", &self.truth)?;
-        grid("learnt", &self.learnt, self.truth.x.len(), self.truth.y.len())
+        grid("learnt", &self.learnt, self.truth.x().len(), self.truth.y().len())
     }
 }
 
 impl Levels {
-    fn learnt(&self) -> Field {
+    fn learnt(&self) -> Result<Field, PlotError> {
         let row = |row: &Vec<Option<f64>>| row.iter().map(|value| value.unwrap_or(f64::NAN)).collect();
-        Field { values: self.learnt.iter().map(row).collect(), ..self.truth.clone() }
+        let values = self.learnt.iter().map(row).collect();
+        Field::new(self.truth.x().to_vec(), self.truth.y().to_vec(), values)
     }
 }
 
