@@ -4,7 +4,7 @@ use kuva::render::plots::Plot;
 use kuva::render::render::render_multiple;
 
 use crate::drawing::samples::{self, Sample};
-use crate::drawing::sheet::{Edge, titled, with_axes};
+use crate::drawing::sheet::{Edge, titled, uncrowd, with_axes};
 use crate::drawing::smooth;
 use crate::drawing::style::heights;
 use crate::levels::Label;
@@ -150,6 +150,7 @@ impl Panel for Plane {
             .with_equal_aspect();
         layout.annotations = self.layers.iter().flat_map(words).collect();
         let mut scene = render_multiple(plots, layout);
+        uncrowd(&mut scene);
         let mut rasters = vec![];
         for layer in &self.layers {
             if let Layer::Levels { field, known, .. } = layer {
