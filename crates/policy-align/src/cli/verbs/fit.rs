@@ -19,6 +19,7 @@ use crate::cli::given::no_input;
 use crate::cli::lines::{Lines, amount, counted, size, squared_error};
 use crate::cli::options::config::{Config, printed};
 use crate::cli::options::flags::{FitFlags, PrepareFlags, ReadFlags};
+use crate::cli::options::without_effect::of_learner;
 use crate::cli::pages::trust_page::trust_page;
 use crate::cli::recorded::{base_name, known_episode, named, read_pieces, unreported};
 use crate::cli::session::{Output, Session, write_together};
@@ -77,6 +78,7 @@ impl Fit {
         no_input(&self.output(), &inputs)?;
         let (mut prepare_options, fit_options) = (preparing.options(reading.dt)?, learning.options()?);
         let place = || named(&self.files);
+        of_learner(&self.learning, fit_options.learner)?;
         let shard = self.shard.as_deref().map(shard).transpose()?;
         let division = division(session, &self.files, (&reading, &learning), &fit_options)?;
         let recordings;
