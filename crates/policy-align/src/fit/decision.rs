@@ -66,7 +66,7 @@ pub(super) fn learner_decision(options: &FitOptions, readings: &AutoFit) -> Deci
             let why = match options.reading {
                 Some(reading) => format!("reading given: {reading:?}").to_lowercase(),
                 None => format!(
-                    "{}: held-out error {} with direction, {} without",
+                    "{}: error relative to the motion {} with direction, {} without",
                     found(reading),
                     squared_error(numbers.a_s),
                     squared_error(numbers.a_d)
