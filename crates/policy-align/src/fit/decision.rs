@@ -1,11 +1,13 @@
 //! What a fit decided, and why.
 
 use gp::{AutoFit, Hypothesis, RowsDropped};
+use motion::LearntPolicy as _;
 use prepare::numbers::squared_error;
 
+use super::aligning::AlignedFit;
 use super::digest::Digest;
 use super::options::{FitOptions, LearnerChoice};
-use crate::{Decision, Prepared};
+use crate::{Decision, LeftOut, Prepared};
 
 /// A decision, its reason, and the flag that overrides it.
 pub(super) fn decision(what: &str, value: impl Into<String>, why: impl Into<String>, flag: &str) -> Decision {
@@ -52,6 +54,14 @@ pub(super) fn digests_decision(prepared: &Prepared, digests: &[Digest], readings
     };
     let at_hand = format!("{} samples", prepared.demonstrations.n_samples());
     (!digests.is_empty()).then(|| decision("at once", at_hand, why, "--at-once"))
+}
+
+/// Movements that PolicyAlign could not align with the others.
+pub(super) fn discarded(aligned: &AlignedFit, episodes: &[String]) -> Vec<LeftOut> {
+    let Some(kept) = aligned.policy.kept() else { return Vec::new() };
+    let others = (0..episodes.len()).filter(|episode| !kept.contains(episode));
+    let why = "not aligned: no other movement passes near it";
+    others.map(|at| LeftOut { episode: episodes[at].clone(), why: why.to_owned() }).collect()
 }
 
 pub(super) fn learner_decision(options: &FitOptions, readings: &AutoFit) -> Decision {
