@@ -114,7 +114,7 @@ pub fn prepare<'a>(
         repairs::jumps::cut(&mut episodes, &state_channels, &mut notes);
     }
     repairs::episodes::leave_out_still(&mut episodes, &mut notes);
-    notes.findings.extend(remarks::other_units(&episodes));
+    notes.findings.extend(remarks::other_units(&episodes, &scales_of(&of_state)));
     repairs::labels::decide(&mut episodes, of_state.len(), &mut notes);
     if episodes.is_empty() {
         let why = notes.left_out.first().map_or_else(String::new, |left_out| left_out.why.clone());

@@ -1,10 +1,8 @@
 //! What a fit decided, and why.
 
 use gp::{AutoFit, Hypothesis, RowsDropped};
-use motion::LearntPolicy as _;
 use prepare::numbers::squared_error;
 
-use super::aligning::AlignedFit;
 use super::digest::Digest;
 use super::options::{FitOptions, LearnerChoice};
 use crate::{Decision, LeftOut, Prepared};
@@ -56,9 +54,8 @@ pub(super) fn digests_decision(prepared: &Prepared, digests: &[Digest], readings
     (!digests.is_empty()).then(|| decision("at once", at_hand, why, "--at-once"))
 }
 
-/// Movements that PolicyAlign could not align with the others.
-pub(super) fn discarded(aligned: &AlignedFit, episodes: &[String]) -> Vec<LeftOut> {
-    let Some(kept) = aligned.policy.kept() else { return Vec::new() };
+/// Movements but those kept: PolicyAlign could not align them with these.
+pub(super) fn discarded(kept: &[usize], episodes: &[String]) -> Vec<LeftOut> {
     let others = (0..episodes.len()).filter(|episode| !kept.contains(episode));
     let why = "not aligned: no other movement passes near it";
     others.map(|at| LeftOut { episode: episodes[at].clone(), why: why.to_owned() }).collect()

@@ -142,7 +142,8 @@ pub fn fit_with(
     });
     // With a robot's inertia, parts along a movement are not lengths.
     let predicted = if rows.momenta().is_none() { predicted(&readings, options.learner) } else { vec![] };
-    let not_aligned = aligned.as_ref().map_or_else(Vec::new, |aligned| discarded(aligned, &prepared.episodes));
+    let not_aligned = aligned.as_ref().and_then(|aligned| aligned.policy.kept());
+    let not_aligned = not_aligned.map_or_else(Vec::new, |kept| discarded(kept, &prepared.episodes));
     let learnt = match (options.learner, aligned) {
         (_, Some(aligned)) => {
             decisions.extend(aligned.decisions);
