@@ -60,6 +60,22 @@ pub struct ReadOptions {
     pub trust: bool,
 }
 
+impl ReadOptions {
+    /// The options given that files of this format have no use for, as flags, and what each is for.
+    pub(crate) fn idle(&self, format: Format) -> impl Iterator<Item = (&'static str, &'static str)> {
+        let text = matches!(format, Format::Csv | Format::Tsv);
+        let arrays = text || matches!(format, Format::Npy | Format::Npz | Format::Hdf5 | Format::Mat | Format::Jsonl);
+        let given = [
+            ("--separator", "text with separators", self.separator.is_some() && !text),
+            ("--decimal", "text with separators", self.decimal.is_some() && !text),
+            ("--samples-are", "arrays, and text without a header", self.samples_are.is_some() && !arrays),
+            ("--filter", "HDF5 as robomimic writes it", self.filter.is_some() && format != Format::Hdf5),
+            ("--topic", "bags (MCAP)", self.topic.is_some() && format != Format::Mcap),
+        ];
+        given.into_iter().filter(|(.., idle)| *idle).map(|(flag, of, _)| (flag, of))
+    }
+}
+
 /// A format by name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]

@@ -8,7 +8,7 @@ use crate::guard::guarded;
 use crate::input::{Input, name_of, unreadable};
 use crate::joined::joined;
 use crate::names::natural;
-use crate::raw::RawRecordings;
+use crate::raw::{self, RawRecordings};
 use crate::regular_file::FileState;
 use crate::rows::piece::{Piece, Span};
 use crate::rows::{delimited, json_lines, roles};
@@ -132,14 +132,17 @@ fn drafts(path: &Path, options: &ReadOptions, progress: &mut dyn FnMut(u64)) -> 
     let name = name_of(path);
     if path.is_dir() {
         return match sniff::folder(path, &name)? {
-            Folder::LeRobot => with_feature!("parquet", &name, crate::rows::lerobot::read(path, options, progress)),
+            Folder::LeRobot => {
+                let drafts = with_feature!("parquet", &name, crate::rows::lerobot::read(path, options, progress));
+                drafts.map(|drafts| with_idle(drafts, Format::LeRobot, options))
+            }
             Folder::Files => folder(path, &name, options, progress),
         };
     }
     let mut input = Input::new(path, options)?;
     let format = sniff::format(&input)?;
     input.columns_first = format == Format::Mat;
-    match format {
+    let drafts = match format {
         Format::Csv | Format::Tsv => delimited::read(&input, None, progress),
         Format::Jsonl => json_lines::read(&input, None, progress),
         Format::Npy => npy::read(&input, progress),
@@ -154,7 +157,18 @@ fn drafts(path: &Path, options: &ReadOptions, progress: &mut dyn FnMut(u64)) -> 
         Format::Hdf5 => with_feature!("hdf5", &name, crate::arrays::hdf5::read(&input, progress)),
         Format::Mcap => with_feature!("mcap", &name, crate::rows::mcap::read(&input, progress)),
         Format::Mat => with_feature!("mat", &name, crate::arrays::mat::read(&input, progress)),
-    }
+    };
+    drafts.map(|drafts| with_idle(drafts, format, options))
+}
+
+/// With a remark on every option that says nothing of this format.
+fn with_idle(mut drafts: RawRecordings, format: Format, options: &ReadOptions) -> RawRecordings {
+    let remark = |(flag, of): (&str, &str)| {
+        let what = format!("{flag} has no effect on {}", sniff::name(format));
+        raw::remark(what, format!("no {flag}: it is for {of}"))
+    };
+    drafts.findings.extend(options.idle(format).map(remark));
+    drafts
 }
 
 /// Records of a part of a text.
@@ -165,9 +179,12 @@ fn part(
     progress: &mut dyn FnMut(u64),
 ) -> Result<RawRecordings, ReadError> {
     let input = Input::new(path, options)?;
-    let drafts = sniff::format(&input).and_then(|format| match format {
-        Format::Jsonl => json_lines::read(&input, Some(span), progress),
-        _ => delimited::read(&input, Some(span), progress),
+    let drafts = sniff::format(&input).and_then(|format| {
+        let drafts = match format {
+            Format::Jsonl => json_lines::read(&input, Some(span), progress),
+            _ => delimited::read(&input, Some(span), progress),
+        };
+        drafts.map(|drafts| with_idle(drafts, format, options))
     });
     // What it says of a file that has changed is of no use.
     span.require_unchanged(path)?;

@@ -133,7 +133,7 @@ fn looks_like(content: Content) -> &'static str {
     }
 }
 
-fn name(format: Format) -> &'static str {
+pub(crate) fn name(format: Format) -> &'static str {
     match format {
         Format::Csv => "CSV",
         Format::Tsv => "TSV",

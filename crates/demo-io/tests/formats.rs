@@ -8,7 +8,7 @@ mod common;
 use std::path::{Path, PathBuf};
 
 use common::{Files, names, read_with, said};
-use demo_io::{ReadOptions, write};
+use demo_io::{ReadOptions, SamplesAre, write};
 use motion::Recordings;
 
 fn kept(name: &str) -> PathBuf {
@@ -167,4 +167,32 @@ fn same(found: &Recordings, back: &Recordings, what: &str) {
         assert_eq!((&found.positions, &found.velocities), (&back.positions, &back.velocities), "{what}");
         assert!(found.times.stamps().iter().zip(&*back.times.stamps()).all(|(a, b)| (a - b).abs() < 1e-9), "{what}");
     }
+}
+
+/// Options that say nothing of a format are told, once for all files of it.
+#[test]
+fn options_without_effect_are_remarked() {
+    let files = Files::new();
+    let [a, b] = ["a.csv", "b.csv"].map(|name| files.add(name, "t,x,y\n0,1,2\n1,3,5\n2,4,9\n"));
+    let options = ReadOptions {
+        topic: Some("joints".to_owned()),
+        filter: Some("train".to_owned()),
+        samples_are: Some(SamplesAre::Columns),
+        separator: Some(','),
+        ..ReadOptions::default()
+    };
+    let found = demo_io::read_all(&[a, b], &options, &mut |_| ()).unwrap();
+    let what: Vec<&str> = found.findings.iter().map(|finding| &finding.what[..]).collect();
+    assert_eq!(
+        what,
+        [
+            "--samples-are columns has no effect on a table with a header",
+            "--filter has no effect on CSV",
+            "--topic has no effect on CSV"
+        ]
+    );
+    assert_eq!(found.findings[2].next, "no --topic: it is for bags (MCAP)");
+    let options = ReadOptions { samples_are: None, topic: None, filter: None, ..options };
+    let found = read_with(&kept("cell.mat"), &options).unwrap();
+    assert!(said(&found).contains("--separator has no effect on MAT"), "{}", said(&found));
 }

@@ -128,3 +128,55 @@ fn contexts_are_named_by_number() {
         assert_eq!(read_with(&path, &unknown).unwrap_err().code(), "NoColumn", "{name}");
     }
 }
+
+/// Movements as objects of columns, without stamps: by `--dt` or a step beside them, else refused as a table is.
+#[test]
+fn columns_without_stamps_are_movements() {
+    let column =
+        |of: &dyn Fn(f64) -> f64| serde_json::to_string(&(0..40).map(|at| of(f64::from(at))).collect::<Vec<_>>());
+    let movement = |shift: f64| {
+        let [x, y] = [column(&|at| at + shift).unwrap(), column(&|at| at * at - shift).unwrap()];
+        format!(r#""x": {x}, "y": {y}"#)
+    };
+    let [a, b] = [0.0, 5.0].map(movement);
+    let given = ReadOptions { dt: Some(0.5), ..ReadOptions::default() };
+    let expected =
+        read(&format!("[{{\"t\": {}, {a}}}, {{\"t\": {}, {b}}}]", stamps(40), stamps(40)), &ReadOptions::default());
+    for (name, text) in [
+        ("a.json", format!("[{{{a}}}, {{{b}}}]")),
+        ("a.jsonl", format!("{{{a}}}\n{{{b}}}\n")),
+        ("a.json", format!(r#"{{"episodes": [{{{a}}}, {{{b}}}]}}"#)),
+    ] {
+        let found = parsed(name, &text, &given).unwrap();
+        assert_eq!((names(&found), numbers(&found)), (vec!["x", "y"], numbers(&expected)), "{text:.60}");
+        refused(name, &text, &ReadOptions::default(), "NoTime", &["--dt SECONDS", "of: x, y"]);
+    }
+    let beside = format!(r#"{{"dt": 0.5, "episodes": [{{{a}}}, {{{b}}}]}}"#);
+    assert_eq!(numbers(&read(&beside, &ReadOptions::default())), numbers(&expected));
+}
+
+fn read(text: &str, options: &ReadOptions) -> Recordings {
+    parsed("a.json", text, options).unwrap()
+}
+
+fn stamps(count: usize) -> String {
+    serde_json::to_string(&(0..count).map(|at| 0.5 * at as f64).collect::<Vec<_>>()).unwrap()
+}
+
+/// An array beside the state of the same shape may be its velocities, whatever its name.
+#[test]
+fn arrays_that_may_be_velocities_are_named() {
+    let given = ReadOptions { dt: Some(0.5), ..ReadOptions::default() };
+    let file = |beside: &str| format!(r#"[{{"x": [[1, 2], [3, 4], [5, 7]], {beside}}}]"#);
+    for (beside, next) in [
+        (r#""u": [[4, 4], [4, 6], [4, 6]]"#, "--velocity u if it holds velocities, --state with"),
+        (r#""u": [[4], [4], [4]]"#, "--state with those"),
+        (r#""v": [[4, 4], [4, 6], [4, 6]], "u": [[4, 4], [4, 6], [4, 6]]"#, "--state with those"),
+    ] {
+        let found = read(&file(beside), &given);
+        let finding = found.findings.iter().find(|finding| finding.what == "arrays not used: u").unwrap();
+        assert!(finding.next.starts_with(next), "{}", finding.next);
+    }
+    let asked = ReadOptions { velocity: vec!["u".to_owned()], ..given };
+    assert!(read(&file(r#""u": [[4, 4], [4, 6], [4, 6]]"#), &asked).episodes[0].velocities.is_some());
+}

@@ -440,3 +440,21 @@ fn lines_may_be_channels() {
     refused("a.txt", text, &plain(), "NoRoles", &["--samples-are columns if each line is a channel", "--state 2,3"]);
     refused("a.txt", "1 3 5\n2 a 6\n", &every, "NotANumber", &["'a'", "line 2, column 1"]);
 }
+
+/// Files joined without care have a header among their rows, near or far from the first.
+#[test]
+fn a_repeated_header_is_named_with_its_line() {
+    for (header, rows) in [("t,x,y", 5), ("t,x,y", 100), ("episode, t, x, y", 100), ("take,constraint,t,x,y", 100)] {
+        let row = |at: usize| match header.split(',').count() {
+            3 => format!("{at},{},{}\n", at * at, 2 * at),
+            4 => format!("a,{at},{},{}\n", at * at, 2 * at),
+            _ => format!("a,rail,{at},{},{}\n", at * at, 2 * at),
+        };
+        let file = format!("{header}\n{}", (0..rows).map(row).collect::<String>());
+        let line = format!("a.csv, line {}", rows + 2);
+        for options in [plain(), ReadOptions { dt: Some(0.1), ..plain() }] {
+            let words = ["the header is repeated", line.as_str(), "several can be named"];
+            refused("a.csv", format!("{file}{file}"), &options, "NotANumber", &words);
+        }
+    }
+}

@@ -4,7 +4,7 @@ use kuva::render::plots::Plot;
 use kuva::render::render::render_multiple;
 
 use crate::drawing::samples::{self, Sample};
-use crate::drawing::sheet::{Edge, titled, with_axes};
+use crate::drawing::sheet::{Edge, titled, uncrowd, with_axes};
 use crate::drawing::smooth;
 use crate::drawing::style::heights;
 use crate::levels::Written;
@@ -161,6 +161,7 @@ impl Panel for Plane {
         let words = self.layers.iter().filter_map(words);
         layout.annotations = words.chain(values.iter().map(Written::annotation)).collect();
         let mut scene = render_multiple(plots, layout);
+        uncrowd(&mut scene);
         let mut rasters = vec![];
         levels::put_on_lines(&values, &mut scene);
         for layer in &self.layers {

@@ -344,6 +344,16 @@ fn pieces_of_one_file_give_one_model() {
     assert!(error(&one) < 2.0 * error(&all) + 1e-6, "{} {}", error(&one), error(&all));
     let missing = fit("2", &format!("{PIECES} --merge part-1-of-2.json -o none.json"));
     assert!(missing.err.contains("no part has large.csv from line"), "{}", missing.err);
+    let twice =
+        fit("2", &format!("{PIECES} --merge part-1-of-2.json part-2-of-2.json ./part-1-of-2.json -o none.json"));
+    assert!(twice.err.contains("is in two parts\n  in:  part-1-of-2.json, ./part-1-of-2.json\n"), "{}", twice.err);
+    done(&fit("2", &format!("{PIECES} --shard 1/2 --smooth 5 -o other.json")));
+    let other = fit("2", &format!("{PIECES} --merge part-2-of-2.json other.json -o none.json"));
+    assert!(
+        other.err.contains("was made with other files, options") && other.err.contains("in:  other.json\n"),
+        "{}",
+        other.err
+    );
 
     // A fit that cannot write its model has kept all digests; what an interrupt leaves of them is taken.
     let kept = path.join("m.json.unfinished");

@@ -378,3 +378,25 @@ fn new_goals_are_reached_through_noise_and_units() {
         }
     }
 }
+
+/// Where a context is not chosen, or has no place, the error says so, with numbers to paste.
+#[test]
+fn a_context_that_is_missing_or_of_no_use_is_named() {
+    for (line, what) in [
+        ("rollout goals.json --from 1.2,-1", "the policy depends on goal_x, goal_y: a number is needed for each"),
+        ("export goals.json --to mcap", "the policy depends on goal_x, goal_y: a number is needed for each"),
+        ("export goals.json --to mcap --context goal_x=0.1", "the context needs a number for each of goal_x, goal_y"),
+    ] {
+        let ran = run_in(folder(), line);
+        let place = if line.contains("goal_x") { "--context\n" } else { "--context, which is not given\n" };
+        assert!(ran.code == Some(2) && ran.err.contains(what) && ran.err.contains(place), "{line}: {}", ran.err);
+        let flag = &ran.err[ran.err.rfind("--context").unwrap()..];
+        let again = run_in(
+            folder(),
+            &format!("{} {}", line.replace(" --context goal_x=0.1", ""), flag.trim().replace('\'', "")),
+        );
+        assert_eq!(again.code, Some(0), "{flag}: {}", again.err);
+    }
+    let ran = run_in(folder(), "export goals.json --to c --context goal_x=0.1,goal_y=0");
+    assert!(ran.code == Some(2) && ran.err.contains("takes its context as an input"), "{}", ran.err);
+}

@@ -153,6 +153,8 @@ fn a_wide_window_has_two_columns_and_a_phone_one() {
             assert!((field[2] - opening[2]).abs() < 30.0, "the picture is beside the verdict: {field:?}, {opening:?}");
             assert!(errors[2] > field[2] && left_out[2] > errors[2]);
             assert!(left_out[0] == opening[0] && left_out[1] == field[1], "what is wide has the width of both");
+            let wrap: String = page.evaluate("getComputedStyle(document.querySelector('#decisions td')).overflowWrap");
+            assert_eq!(wrap, "normal", "words as 'smoothing' stay whole");
             assert!(
                 field[1] > 0.9 * f64::from(width) - 60.0 || width > 1800,
                 "the width is used: {field:?} of {width}"

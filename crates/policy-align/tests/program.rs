@@ -144,11 +144,20 @@ fn results_are_json_if_asked_for() {
         "predict toy.json --at 0.3,1.2",
         "rollout toy.json --from 1,1",
         "evaluate toy.json toy.csv",
+        "predict toy.json --at 0.3,1.2 -o json-one.csv",
+        "plot toy.json -o json.svg",
+        "export toy.json --to c -o json.c",
+        "export toy.json --to mcap -o json.mcap",
+        "convert toy.csv -o json.tsv",
     ] {
         let ran = run(&format!("{line} --json"));
         assert_eq!(ran.code, Some(0), "{}", ran.err);
         let document: Value = serde_json::from_str(&ran.out).unwrap();
         assert!(document.is_object() && ran.out.lines().count() == 1, "{line}");
+        if let Some((_, file)) = line.split_once(" -o ") {
+            assert!(folder().join(file).exists(), "{line}");
+            assert!(line.starts_with("predict") || document == serde_json::json!({ "written": [file] }), "{document}");
+        }
     }
 }
 
@@ -170,6 +179,15 @@ fn errors_have_three_lines_and_a_code() {
         ("fit toy.csv --folds five", 2, "invalid value 'five'"),
         ("fit toy.csv --learner avto", 2, "auto"),
         ("fit toy.csv --bandwidth big", 2, "--bandwidth auto"),
+        ("fit toy.csv --bandwidth wide", 2, "--bandwidth has no effect with --learner auto"),
+        ("fit toy.csv --learner slope --folds 3", 2, "no --folds, or --learner policy-align"),
+        ("fit toy.csv --learner direct --init-d 3", 2, "no --init-d, or --learner policy-align"),
+        ("fit toy.csv --learner policy-align --reading free", 2, "no --reading, or --learner auto"),
+        ("plot toy.json --dt 0.1", 2, "--files with recordings, or no --dt"),
+        ("export toy.json --to onnx --float", 2, "--to c, or no --float"),
+        ("export toy.json --to mcap --name f", 2, "--to c, or no --name"),
+        ("evaluate toy.json toy.csv --scale x=2", 2, "recordings are scaled as the model's"),
+        ("constraints toy.json toy.csv --scale x=2", 2, "recordings are scaled as the model's"),
         ("fit toy.csv --hold-out nobody", 2, "there is no episode 'nobody'"),
         ("fit toy.csv --hold-out 0%", 2, "'0%' is not a share of 40 episodes"),
         ("fit toy.csv --hold-out x%", 2, "as 20%"),
@@ -218,6 +236,75 @@ fn errors_have_three_lines_and_a_code() {
     let ran = run("evaluate toy.json toy.csv --require 1e-12");
     assert_eq!(ran.code, Some(1), "{}", ran.out);
     assert!(ran.out.contains("not met"));
+}
+
+/// Words of a text, whatever lines they are on.
+fn words(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+/// An error along the motion says nothing of other directions: where the true policy is known, it must be met in all.
+#[test]
+fn an_error_is_required_in_all_directions_where_it_is_known() {
+    let rows = std::fs::read_to_string(folder().join("toy.csv")).unwrap();
+    let (head, rows) = rows.split_once('\n').unwrap();
+    // A true policy that is another one.
+    let with = |row: &str| {
+        let fields: Vec<&str> = row.split(',').collect();
+        format!("{row},{},{}\n", fields[3], fields[2])
+    };
+    let text = format!("{head},pi_x,pi_y\n{}", rows.lines().map(with).collect::<String>());
+    std::fs::write(folder().join("other-truth.csv"), text).unwrap();
+    let ran = run("evaluate toy.json toy.csv --require 0.1");
+    assert_eq!(ran.code, Some(0), "{}", ran.out);
+    let said =
+        "required at most 0.1: met (the error relative to the policy, along the motion; --truth also requires it";
+    assert!(words(&ran.out).contains(said), "{}", ran.out);
+    let ran = run("evaluate toy.json other-truth.csv --truth pi_* --require 0.1");
+    assert_eq!(ran.code, Some(1), "{}", ran.out);
+    assert!(
+        words(&ran.out).contains("not met (the error relative to the policy, along the motion, and the nUPE"),
+        "{}",
+        ran.out
+    );
+}
+
+/// A robot of no use is named, as one that is used is among the decisions; one that cannot be used is refused.
+#[test]
+fn what_a_robot_changes_is_said() {
+    let link = |name: &str| {
+        format!(r#"<link name="{name}"><inertial><origin xyz="1 0 0"/><mass value="1"/></inertial></link>"#)
+    };
+    let joint = |name: &str, [parent, child]: [&str; 2]| {
+        format!(
+            r#"<joint name="{name}" type="continuous"><parent link="{parent}"/><child link="{child}"/><axis xyz="0 0 1"/></joint>"#
+        )
+    };
+    let links = [link("base"), link("upper"), link("lower")].concat();
+    let joints = joint("x", ["base", "upper"])
+        + &joint("y", ["upper", "lower"]).replace("<axis", r#"<origin xyz="1 0 0"/><axis"#);
+    std::fs::write(folder().join("arm.urdf"), format!(r#"<robot name="arm">{links}{joints}</robot>"#)).unwrap();
+    let out = run("fit toy.csv --robot arm.urdf -o arm.json").out;
+    assert!(
+        words(&out).contains("robot has joints for 2 channels; neither its inertia nor constraints of its links"),
+        "{out}"
+    );
+    let ran = run("fit toy.csv --robot arm.urdf --learner direct");
+    assert_eq!(ran.code, Some(2));
+    assert!(ran.err.contains("try: no --robot, or --learner auto or --learner slope"), "{}", ran.err);
+}
+
+/// Two errors that are measured in different ways have different names.
+#[test]
+fn errors_of_a_fit_say_what_they_are_relative_to() {
+    let out = words(&run("fit toy.csv -o errors.json --hold-out 20%").out);
+    for said in [
+        "constraints detected: error relative to the motion ",
+        " error cross-validated, relative to the policy: ",
+        " hold-out 8 episodes, not learnt from: error relative to the policy ",
+    ] {
+        assert!(out.contains(said), "{said}: {out}");
+    }
 }
 
 /// A recorder that stamps samples twice in every episode gets a few lines, and how many more there are.
@@ -487,4 +574,60 @@ fn columns_of_the_truth_are_not_called_unused() {
     }
     let ran = run("evaluate toy.json truth.csv --ignore reward");
     assert!(ran.err.contains("columns not used: pi_x, pi_y:"), "{}", ran.err);
+}
+
+/// What PolicyAlign cannot align is named, and which numbers are the Gaussian process's.
+#[test]
+fn a_movement_that_is_not_aligned_is_left_out_by_name() {
+    let toy = std::fs::read_to_string(folder().join("toy.csv")).unwrap();
+    let away = |row: &str| {
+        let fields: Vec<&str> = row.split(',').collect();
+        let [x, y] = [2, 3].map(|at| fields[at].parse::<f64>().unwrap() + 40.0);
+        format!("lone,{},{x},{y},{},{}\n", fields[1], fields[4], fields[5])
+    };
+    let lone: String = toy.lines().skip(1).take(40).map(away).collect();
+    std::fs::write(folder().join("lone.csv"), toy + &lone).unwrap();
+    let ran = run("fit lone.csv --learner policy-align --bandwidth narrow --init-d 6 -o lone.json");
+    assert!(
+        ran.out.contains("left out     1 episode (lone: not aligned: no other movement passes near it)"),
+        "{}",
+        ran.out
+    );
+    let page = std::fs::read_to_string(folder().join("lone.trust.html")).unwrap();
+    assert!(page.contains("Left out: lone (not aligned"), "the page lists it");
+    for number in [
+        "relative to the policy (of PolicyAlign)",
+        "error of the worst episode (of the Gaussian process)",
+        "either half of the episodes (of the Gaussian process)",
+        "no potential explains (of the slope GP)",
+    ] {
+        assert!(page.contains(number), "{number}");
+    }
+    let page = std::fs::read_to_string(folder().join("toy.trust.html")).unwrap();
+    assert!(!page.contains("(of PolicyAlign)") && !page.contains("(of the Gaussian process)"));
+}
+
+/// Of two readings the user may choose one, which is then no doubt; where another learner is asked for, that is said.
+#[test]
+fn the_choice_between_two_readings_is_offered_where_it_is_heeded() {
+    let sample = |episode: i32, i: i32| {
+        let (k, left) = (f64::from(episode), (-0.1 * f64::from(i)).exp());
+        format!("{episode},{:.2},{:.6},{:.6}\n", 0.1 * f64::from(i), (1.0 + 0.3 * k) * left, 0.2 * k)
+    };
+    let rows: String = (0..10).flat_map(|episode| (0..20).map(move |i| sample(episode, i))).collect();
+    std::fs::write(folder().join("readings.csv"), format!("episode,t,x,y\n{rows}")).unwrap();
+    for (flags, verdict, next) in [
+        ("", "doubtful", "set --reading free or --reading constrained"),
+        ("--reading free", "good", "the policy is right if nothing was constrained, as given"),
+        ("--reading constrained", "good", "the policy is right if constraints acted, as given"),
+        ("--learner slope", "doubtful", "--learner auto with --reading free or --reading constrained"),
+    ] {
+        let ran = run(&format!("fit readings.csv {flags} -o readings.json --json"));
+        let document: Value = serde_json::from_str(&ran.out).unwrap();
+        let findings = document["trust"]["findings"].as_array().unwrap();
+        let found = findings.iter().find(|of| of["what"].as_str().unwrap().starts_with("two readings explain"));
+        let found = found.unwrap_or_else(|| panic!("{flags}: {}", ran.out));
+        assert_eq!(found["verdict"], verdict, "{flags}");
+        assert!(found["next"].as_str().unwrap().contains(next), "{flags}: {found}");
+    }
 }

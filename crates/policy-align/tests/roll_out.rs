@@ -54,6 +54,22 @@ fn it_comes_to_rest_where_the_potential_is_least() {
     assert_eq!(path.broken_by, None);
 }
 
+/// Where it comes to rest does not depend on how often the path is sampled.
+#[test]
+fn rest_does_not_depend_on_the_step() {
+    let model = toy_model();
+    let usual = follow(&RollOut { seconds: Some(400.0), ..RollOut::default() }, &dvector![1.5, 1.0]);
+    let end = |path: &Path| path.times[path.times.len() - 1];
+    for share in [0.1, 0.5, 2.0, 5.0] {
+        let step = share * model.time_step;
+        let path =
+            follow(&RollOut { seconds: Some(400.0), step: Some(step), ..RollOut::default() }, &dvector![1.5, 1.0]);
+        assert_eq!(path.stop, Stop::AtRest);
+        let most = model.time_step + 2.0 * step;
+        assert!((end(&path) - end(&usual)).abs() <= most, "{share}: {} s, {} s", end(&path), end(&usual));
+    }
+}
+
 #[test]
 fn it_agrees_with_small_steps_of_another_method() {
     let (model, start) = (toy_model(), dvector![-1.2, 0.8]);

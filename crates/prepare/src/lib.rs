@@ -109,10 +109,12 @@ pub fn prepare<'a>(
     if options.wraps == Repair::Auto {
         repairs::wraps::unwrap(&mut episodes, &state_channels, &mut notes);
     }
+    notes.findings.extend(remarks::odd_channels(&episodes, &state_channels));
     if options.jumps == Repair::Auto {
         repairs::jumps::cut(&mut episodes, &state_channels, &mut notes);
     }
     repairs::episodes::leave_out_still(&mut episodes, &mut notes);
+    notes.findings.extend(remarks::other_units(&episodes, &scales_of(&of_state)));
     repairs::labels::decide(&mut episodes, of_state.len(), &mut notes);
     if episodes.is_empty() {
         let why = notes.left_out.first().map_or_else(String::new, |left_out| left_out.why.clone());

@@ -2,7 +2,7 @@
 
 use crate::arrays::array::{ArraySpec, Kind};
 use crate::arrays::within::{Part, Within, arrays, parts};
-use crate::names::selection::glob;
+use crate::names::selection::{flags, glob};
 use crate::raw::MOST_CHANNELS;
 use crate::rows::roles::{is_time, named, no_column, shortened, velocity_names};
 use crate::{Fault, ReadError, ReadOptions};
@@ -188,6 +188,18 @@ impl Fields {
     /// The arrays that are joined, channel after channel: the state, and what is beside it.
     pub(crate) fn block(&self) -> impl Iterator<Item = usize> + '_ {
         self.state.iter().chain(&self.beside).copied()
+    }
+
+    /// The name of an array without a role that has the shape of the state's only one, where there are no velocities: it may hold them.
+    pub(crate) fn like_velocities<'a>(&self, arrays: &'a [ArraySpec], elsewhere: &[String]) -> Option<&'a str> {
+        let &[state] = &self.state[..] else { return None };
+        let shape = &arrays[state].shape;
+        let could = |(index, array): &(usize, &'a ArraySpec)| {
+            let is_free = self.velocity.is_empty() && !self.uses(*index) && !self.ignores(*index);
+            is_free && array.shape == *shape && matches!(array.kind, Kind::Number(_))
+        };
+        let mut names = arrays.iter().enumerate().filter(could).map(|(_, array)| &array.name[..]);
+        names.find(|&name| flags(elsewhere, &[name]) == [false])
     }
 
     /// The velocity of every array of the state, or none.

@@ -287,6 +287,10 @@ impl ArrayReader<'_> {
         let not_used: Vec<&str> = not_used.map(|(_, array)| &array.name[..]).collect();
         let columns: Vec<&str> = unused_columns.iter().map(String::as_str).collect();
         let elsewhere = &self.input.options.elsewhere;
-        coarse.chain(unused("arrays", &not_used, elsewhere)).chain(unused("columns", &columns, elsewhere)).collect()
+        let mut arrays = unused("arrays", &not_used, elsewhere);
+        if let (Some(finding), Some(name)) = (&mut arrays, self.fields.like_velocities(self.arrays, elsewhere)) {
+            finding.next = format!("--velocity {name} if it holds velocities, {}", finding.next);
+        }
+        coarse.chain(arrays).chain(unused("columns", &columns, elsewhere)).collect()
     }
 }

@@ -9,7 +9,7 @@ mod source;
 
 use csv::ByteRecord;
 
-use self::beginning::Beginning;
+use self::beginning::{Beginning, header_again, is_header};
 pub(crate) use self::cut::cut;
 use crate::arrays::array::{ArraySpec, Data, Kind};
 use crate::arrays::flat;
@@ -17,7 +17,7 @@ use crate::input::Input;
 use crate::raw::{RawRecordings, remark};
 use crate::rows::piece::Span;
 use crate::rows::table::Row as _;
-use crate::{Fault, ReadError};
+use crate::{Fault, ReadError, SamplesAre};
 
 /// All records, or those of a part.
 pub(crate) fn read(
@@ -30,7 +30,8 @@ pub(crate) fn read(
         return transposed(input, beginning);
     }
     let mut table = beginning.table(input)?;
-    let Beginning { dialect, mut records, head, .. } = beginning;
+    let is_idle = beginning.header.is_some() && input.options.samples_are == Some(SamplesAre::Columns);
+    let Beginning { dialect, header, mut records, head } = beginning;
     drop(head);
     if let Some(part) = part {
         table.forget_episodes();
@@ -38,9 +39,16 @@ pub(crate) fn read(
     }
     let mut record = ByteRecord::new();
     while let Some(line) = records.next(&mut record)? {
-        table.push(line, &dialect.fields(&record))?;
+        table.push(line, &dialect.fields(&record)).map_err(|error| match &header {
+            Some(header) if is_header(&record, header) => header_again(line, &input.name),
+            _ => error,
+        })?;
     }
     let mut drafts = table.finish();
+    if is_idle {
+        let what = "--samples-are columns has no effect on a table with a header";
+        drafts.findings.push(remark(what, "no --samples-are, or a file whose lines are channels without a header"));
+    }
     if dialect.decimal_comma {
         let what = format!("decimal commas of {} were read as points", input.name);
         drafts.findings.push(remark(what, "--decimal . if they are something else"));

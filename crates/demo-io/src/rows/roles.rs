@@ -182,11 +182,18 @@ impl Roles {
         if !lacking.is_empty() {
             let known: Vec<&str> = found.iter().flatten().map(|&index| names[index]).collect();
             let what = format!("some states have a velocity ({}), but {} lack one", known.join(", "), quoted(&lacking));
-            let remedy = format!(
-                "--state with the names of the state, --ignore {} or --velocity with a column for each state, or --context {} for a goal or the like",
-                known.join(","),
-                lacking.join(",")
-            );
+            let (known, lacking) = (known.join(","), lacking.join(","));
+            let others = "--velocity with a column for each state";
+            // What is rarer does not belong: a gripper beside the state, or the velocities of a few.
+            let remedy = if 2 * found.iter().flatten().count() > found.len() {
+                format!(
+                    "--ignore {lacking} if it is no coordinate, --context {lacking} for a goal or the like, {others}, or --ignore {known}"
+                )
+            } else {
+                format!(
+                    "--ignore {known}, {others}, --state with the names of the state, or --context {lacking} for a goal or the like"
+                )
+            };
             return Err(ReadError::NoRoles(Fault::new(what, place, remedy)));
         }
         self.velocity = found.into_iter().flatten().collect();

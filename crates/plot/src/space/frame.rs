@@ -25,6 +25,12 @@ pub struct Frame {
 const TICK: f64 = 5.0;
 const NUMBER: f64 = 17.0;
 const LABEL: f64 = 40.0;
+/// From a number's middle to the nearest corner of a label.
+const CLEAR: f64 = 14.0;
+/// A label is never further from its axis, pixels.
+const FURTHEST: f64 = 60.0;
+/// Labels of axes that are steeper are turned: sine of the angle.
+const SLANTED: f64 = 0.8;
 /// From a word's middle to its foot.
 const DOWN: f64 = 0.36 * WORDS as f64;
 /// An axis seen shorter than this has no ticks, pixels.
@@ -35,7 +41,8 @@ const APART: f64 = 45.0;
 impl Frame {
     /// What must be on the panel for it to be readable.
     pub(super) fn extents(&self) -> Vec<Extent> {
-        let room = LABEL + 8.0;
+        let widest = self.labels.iter().map(|label| legend::width(label, WORDS)).fold(0.0, f64::max);
+        let room = label_distance(widest, SLANTED) + 8.0;
         let around = Room { left: room, right: room, up: 8.0, down: room };
         corners([self.lowest, self.highest]).map(|at| Extent { at, room: around }).to_vec()
     }
@@ -96,8 +103,10 @@ impl Frame {
             let number = format!("{:.decimals$}", if tick.abs() < 1e-9 { 0.0 } else { tick });
             scene.add(tick_label(foot + outward * NUMBER, outward, &number));
         }
-        let middle = at(f64::midpoint(self.lowest[axis], self.highest[axis])) + outward * LABEL;
-        let rotate = (outward.x.abs() > 0.8).then_some(-90.0);
+        let rotate = (outward.x.abs() > SLANTED).then_some(-90.0);
+        let width = if rotate.is_some() { 0.0 } else { legend::width(&self.labels[axis], WORDS) };
+        let distance = label_distance(width, outward.x.abs());
+        let middle = at(f64::midpoint(self.lowest[axis], self.highest[axis])) + outward * distance;
         scene.add(legend::text((middle.x, middle.y + DOWN), &self.labels[axis], TextAnchor::Middle, "#000000", rotate));
     }
 
@@ -121,6 +130,13 @@ impl Frame {
         let length = view.length(view.direction(&Vector3::ith(axis, 1.0)).xy().norm() * (high - low));
         ticks(low, high, (length / APART).max(2.0))
     }
+}
+
+/// How far a label's middle is from its axis: if the axis is slanted, a long one would lie on the numbers of the ticks. Not so far that the
+/// box becomes small.
+fn label_distance(width: f64, slant: f64) -> f64 {
+    let nearer = 0.5 * width * slant;
+    if NUMBER + nearer <= LABEL { LABEL } else { (NUMBER + CLEAR + nearer).min(FURTHEST) }
 }
 
 /// A word with its middle here, or next to the box its nearer end.

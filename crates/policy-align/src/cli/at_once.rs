@@ -68,8 +68,15 @@ pub(crate) fn digests(
         parts.iter().map(|path| read(path)).collect::<Result<_, _>>()?
     };
     Part::merged(found, &division.further, digester).map_err(|error| {
-        let remedy = "the parts of all shares, made with the same files and flags";
-        Failure::new(Exit::Refused, error.to_string(), counted(parts.len(), "part"), remedy)
+        let named = |of: &[usize]| of.iter().map(|&part| displayed(&parts[part])).collect::<Vec<_>>().join(", ");
+        let (place, remedy) = match &error {
+            PartError::Unfit { parts, .. } if parts.len() > 1 => (named(parts), "--merge with one of them"),
+            PartError::Unfit { parts, .. } => {
+                (named(parts), "this part again, by --shard, with the same files and flags")
+            }
+            _ => (counted(parts.len(), "part"), "the parts of all shares, made with the same files and flags"),
+        };
+        Failure::new(Exit::Refused, error.to_string(), place, remedy)
     })
 }
 

@@ -2,6 +2,7 @@
 
 mod at_once;
 mod clock;
+mod context;
 mod describe;
 pub(crate) mod failure;
 mod given;

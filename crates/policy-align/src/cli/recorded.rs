@@ -58,6 +58,10 @@ pub(crate) fn prepared_for(
     files: &[PathBuf],
     (reading, preparing): (&ReadFlags, &PrepareFlags),
 ) -> Result<(ReadFlags, Prepared), Failure> {
+    if !preparing.scale.is_empty() {
+        let what = "--scale has no effect here: recordings are scaled as the model's";
+        return Err(Failure::usage(what, "--scale", "no --scale; `policy-align fit --scale` learns with others"));
+    }
     let config = Config::of(session)?;
     let mut own = config.under("read", reading)?.with_channels_of(model);
     own.elsewhere.clone_from(&reading.elsewhere);

@@ -5,10 +5,10 @@ use std::time::Duration;
 use clap::Args;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use policy_align::write_whole;
-use serde_json::Value;
+use serde_json::{Value, json};
 use text::{is_hidden, plain};
 
-use crate::cli::failure::{Exit, Failure};
+use crate::cli::failure::{Exit, Failure, displayed};
 
 /// Flags of every command.
 #[derive(Debug, Clone, Default, Args)]
@@ -34,6 +34,12 @@ pub(crate) struct Output {
 impl Output {
     pub(crate) fn done(text: String) -> Output {
         Output { text, exit: Exit::Done }
+    }
+
+    /// As JSON, which files were written.
+    pub(crate) fn written<'a>(files: impl IntoIterator<Item = &'a Path>) -> Output {
+        let files: Vec<String> = files.into_iter().map(displayed).collect();
+        Output::json(&json!({ "written": files }), Exit::Done)
     }
 
     /// One document in one line. What a terminal would not show is escaped, as JSON allows in its texts.

@@ -135,7 +135,7 @@ pub(super) fn fit(
     let tried = grid(&demonstrations, integration, (rows, reference), options, progress)?;
     let best = choose(&tried).ok_or(FitError::Cancelled)?;
     let why_best = format!(
-        "best of {} by cross-validation over {} folds of episodes: held-out error {}",
+        "best of {} by cross-validation over {} folds of episodes: error relative to the motion {}",
         tried.len(),
         best.folds.len(),
         squared_error(best.total().to_choose())

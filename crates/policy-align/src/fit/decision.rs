@@ -5,7 +5,7 @@ use prepare::numbers::squared_error;
 
 use super::digest::Digest;
 use super::options::{FitOptions, LearnerChoice};
-use crate::{Decision, Prepared};
+use crate::{Decision, LeftOut, Prepared};
 
 /// A decision, its reason, and the flag that overrides it.
 pub(super) fn decision(what: &str, value: impl Into<String>, why: impl Into<String>, flag: &str) -> Decision {
@@ -54,6 +54,13 @@ pub(super) fn digests_decision(prepared: &Prepared, digests: &[Digest], readings
     (!digests.is_empty()).then(|| decision("at once", at_hand, why, "--at-once"))
 }
 
+/// Movements but those kept: PolicyAlign could not align them with these.
+pub(super) fn discarded(kept: &[usize], episodes: &[String]) -> Vec<LeftOut> {
+    let others = (0..episodes.len()).filter(|episode| !kept.contains(episode));
+    let why = "not aligned: no other movement passes near it";
+    others.map(|at| LeftOut { episode: episodes[at].clone(), why: why.to_owned() }).collect()
+}
+
 pub(super) fn learner_decision(options: &FitOptions, readings: &AutoFit) -> Decision {
     let given = |learner| decision("learner", learner, "given", "--learner");
     match options.learner {
@@ -66,7 +73,7 @@ pub(super) fn learner_decision(options: &FitOptions, readings: &AutoFit) -> Deci
             let why = match options.reading {
                 Some(reading) => format!("reading given: {reading:?}").to_lowercase(),
                 None => format!(
-                    "{}: held-out error {} with direction, {} without",
+                    "{}: error relative to the motion {} with direction, {} without",
                     found(reading),
                     squared_error(numbers.a_s),
                     squared_error(numbers.a_d)

@@ -45,7 +45,7 @@ pub(super) fn weighed(
     }
     let [before, after] = [plain, &readings].map(|of| squared_error(1.0 - of.slope().report().r_squared));
     let why = format!(
-        "constraints are at right angles in this metric: held-out error {after}, in that of the channels {before}"
+        "constraints are at right angles in this metric: error relative to the motion {after}, in that of the channels {before}"
     );
     let decision = decision("metric", format!("mass matrix of {}", robot.name()), why, "--robot");
     Ok(Some(Weighed { rows, readings, decision }))

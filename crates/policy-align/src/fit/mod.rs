@@ -34,7 +34,7 @@ use crate::trust::{
 };
 use crate::{DataSummary, Decision, Finding, FitError, Learnt, MadeBy, Model, PredictedSpeed, Prepared};
 use aligning::AlignedFit;
-use decision::{digests_decision, learner_decision, rows_decision};
+use decision::{digests_decision, discarded, learner_decision, rows_decision};
 use digest::{widened, with_digests};
 use links::LinkNames;
 
@@ -137,10 +137,18 @@ pub fn fit_with(
     findings.extend(robot.and_then(|robot| joints_in_degrees(&robot, &prepared.state)));
     findings.extend(plane(prepared, &numbers));
     findings.extend(common_surface(&rows, &prepared.state, &numbers));
-    let trust =
-        judge(VerdictInput { numbers, findings: &findings, state: &prepared.state, episodes: &prepared.episodes });
+    let trust = judge(VerdictInput {
+        numbers,
+        findings: &findings,
+        state: &prepared.state,
+        episodes: &prepared.episodes,
+        learner: options.learner,
+        given: options.reading,
+    });
     // With a robot's inertia, parts along a movement are not lengths.
     let predicted = if rows.momenta().is_none() { predicted(&readings, options.learner) } else { vec![] };
+    let not_aligned = aligned.as_ref().and_then(|aligned| aligned.policy.kept());
+    let not_aligned = not_aligned.map_or_else(Vec::new, |kept| discarded(kept, &prepared.episodes));
     let learnt = match (options.learner, aligned) {
         (_, Some(aligned)) => {
             decisions.extend(aligned.decisions);
@@ -150,7 +158,8 @@ pub fn fit_with(
         (LearnerChoice::Direct, _) => Learnt::Direct(Box::new(readings.direct().clone())),
         _ => Learnt::Auto(Box::new(readings)),
     };
-    let data = DataSummary::of(prepared, rows.velocities());
+    let mut data = DataSummary::of(prepared, rows.velocities());
+    data.left_out.extend(not_aligned);
     let data = digests.iter().fold(data, |data, digest| data.and(&digest.data));
     let state = widened(&prepared.state, 0, digests);
     let context = widened(&prepared.context, state.len(), digests);

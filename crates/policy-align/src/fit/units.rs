@@ -52,7 +52,7 @@ fn in_short(factor: f64) -> f64 {
 fn decisions(prepared: &Prepared, scales: &LearntScales, factors: &DVector<f64>) -> Vec<Decision> {
     let (before, after) = scales.left_out;
     let why = format!(
-        "constraints are at right angles in this unit: held-out error {}, as recorded {}",
+        "constraints are at right angles in this unit: error relative to the motion {}, as recorded {}",
         squared_error(after),
         squared_error(before)
     );

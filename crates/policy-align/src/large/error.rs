@@ -27,6 +27,14 @@ pub enum PartError {
         /// Why.
         source: Box<DigestError>,
     },
+    /// Some of several parts do not belong there.
+    #[error("{reason}")]
+    Unfit {
+        /// Which of them, counted from 0.
+        parts: Vec<usize>,
+        /// Why.
+        reason: String,
+    },
     /// Parts are damaged, missing, or of other files.
     #[error("{reason}")]
     Parts {

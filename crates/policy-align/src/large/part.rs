@@ -93,27 +93,34 @@ impl Part {
     /// The digests of all further pieces, in their order, from parts in any order.
     ///
     /// # Errors
-    /// [`PartError::Parts`] where a piece is in no part or in several, has changed, or parts were made for other recordings or options.
+    /// [`PartError::Parts`] where a piece is in no part; [`PartError::Unfit`] where it is in several, has changed, or a part was made for other
+    /// recordings or options.
     pub fn merged(parts: Vec<Part>, pieces: &[FurtherPiece], digester: &Digester) -> Result<Vec<Digest>, PartError> {
-        let wrong = |reason: String| Err(PartError::Parts { reason });
-        let mut merged: Vec<Option<Digest>> = vec![None; pieces.len()];
-        for found in parts.into_iter().flat_map(|part| part.digests) {
+        let mut merged: Vec<Option<(usize, Digest)>> = vec![None; pieces.len()];
+        let digests =
+            parts.into_iter().enumerate().flat_map(|(part, of)| of.digests.into_iter().map(move |of| (part, of)));
+        for (part, found) in digests {
+            let unfit = |parts: Vec<usize>, reason: String| Err(PartError::Unfit { parts, reason });
             let (at, of) = (found.at, &found.name);
             if found.digest.made_for != digester.made_for() {
-                return wrong(format!("the digest of {of} was made with other files, options or by another version"));
+                let reason = format!("the digest of {of} was made with other files, options or by another version");
+                return unfit(vec![part], reason);
             }
             match pieces.get(at) {
                 Some(piece) if found.is_of(piece) => {}
-                _ => return wrong(format!("the digest of {of} is of another file, or of this one before it changed")),
+                _ => {
+                    let reason = format!("the digest of {of} is of another file, or of this one before it changed");
+                    return unfit(vec![part], reason);
+                }
             }
-            if merged[at].is_some() {
-                return wrong(format!("{of} is in two parts"));
+            match &merged[at] {
+                Some((first, _)) => return unfit(vec![*first, part], format!("{of} is in two parts")),
+                None => merged[at] = Some((part, found.digest)),
             }
-            merged[at] = Some(found.digest);
         }
         match merged.iter().position(Option::is_none) {
-            Some(missing) => wrong(format!("no part has {}", pieces[missing].piece.name())),
-            None => Ok(merged.into_iter().flatten().collect()),
+            Some(missing) => Err(PartError::Parts { reason: format!("no part has {}", pieces[missing].piece.name()) }),
+            None => Ok(merged.into_iter().flatten().map(|(_, digest)| digest).collect()),
         }
     }
 }

@@ -39,8 +39,8 @@ const STEPS: usize = 200_000;
 const STEPS_EACH: usize = 10;
 /// At rest is what is slower than this share of the demonstrated median …
 const AT_REST: f64 = 0.01;
-/// … for so many samples.
-const RESTING: usize = 10;
+/// … at all samples within so many of the model's time steps, whatever the step of the roll-out: at ten samples of the usual step.
+const RESTING: f64 = 8.5;
 /// Duration without another, in durations of the longest episode.
 const TIMES_AS_LONG: f64 = 3.0;
 
@@ -75,7 +75,7 @@ pub struct Path {
 /// Why a roll-out ended.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Stop {
-    /// Slower than 1 % of the demonstrated median speed for ten samples, with no constraint left that may change.
+    /// Slower than 1 % of the demonstrated median speed for ten of the model's time steps, with no constraint left that may change.
     AtRest,
     /// The next state would have been outside the demonstrated region.
     LeftTheData,
@@ -124,7 +124,8 @@ impl RollOut {
         let (mut times, mut states) = (vec![0.0], vec![start.clone()]);
         let mut velocities = vec![run.velocity(holding.at(0.0), start, 0.0)?];
         watch.update(start.as_view(), 0.0).map_err(fault(0.0))?;
-        let mut resting = 0;
+        // Since when it rests.
+        let mut resting = None;
         let stop = loop {
             let (time, state) = (times[times.len() - 1], &states[states.len() - 1]);
             if time >= run.seconds {
@@ -142,13 +143,13 @@ impl RollOut {
             let velocity = run.velocity(holding.at(next_time), &next, next_time)?;
             watch.update(next.as_view(), next_time).map_err(fault(next_time))?;
             let slow = velocity.component_mul(&run.scale).norm() < AT_REST * model.data.speed;
-            resting = if slow { resting + 1 } else { 0 };
+            resting = slow.then(|| resting.unwrap_or(next_time));
             times.push(next_time);
             states.push(next);
             velocities.push(velocity);
             // A constraint that ends later may let it go on, and so may one that changes.
             let stays = !changes && run.switches.last().is_none_or(|&last| last <= next_time);
-            if resting >= RESTING && stays {
+            if resting.is_some_and(|since| next_time - since >= RESTING * model.time_step) && stays {
                 break Stop::AtRest;
             }
         };

@@ -6,7 +6,7 @@ use prepare::direction_by_channels;
 use prepare::numbers::{percent, short};
 
 use super::numbers::TrustNumbers;
-use crate::{Finding, StateChannel, Trust, Verdict};
+use crate::{Finding, LearnerChoice, StateChannel, Trust, Verdict};
 
 /// Left-out error along the path from which a policy is wrong.
 const WRONG: f64 = 0.5;
@@ -27,13 +27,19 @@ pub(crate) struct VerdictInput<'a> {
     pub(crate) state: &'a [StateChannel],
     /// Names of the movements learnt from.
     pub(crate) episodes: &'a [String],
+    pub(crate) learner: LearnerChoice,
+    /// The reading that the user gave, if any.
+    pub(crate) given: Option<Hypothesis>,
 }
 
 /// The findings, the worst first, and the verdict that follows.
 pub(crate) fn judge(evidence: VerdictInput<'_>) -> Trust {
-    let VerdictInput { numbers, findings, state, episodes } = evidence;
+    let VerdictInput { numbers, findings, state, episodes, learner, given } = evidence;
     let mut findings = findings.to_vec();
     let mut found = |verdict, what: String, next: &str| findings.push(Finding { verdict, what, next: next.to_owned() });
+    if numbers.reading == Hypothesis::Ambiguous {
+        about_two_readings(&numbers, (learner, given), &mut found);
+    }
     about_reading(&numbers, state, &mut found);
     about_episodes(&numbers, episodes, &mut found);
     about_error(&numbers, &mut found);
@@ -45,7 +51,7 @@ fn about_reading(numbers: &TrustNumbers, state: &[StateChannel], found: &mut dyn
     let direction = direction_by_channels(&numbers.unseen_direction, state);
     let coverage = short(numbers.direction_coverage);
     match numbers.reading {
-        Hypothesis::Constrained => {}
+        Hypothesis::Constrained | Hypothesis::Ambiguous => {}
         Hypothesis::Free if numbers.direction_coverage < SPREAD => found(
             Verdict::Doubtful,
             format!("no constraint was detected, but movements hardly vary along {direction} (coverage {coverage})"),
@@ -55,14 +61,6 @@ fn about_reading(numbers: &TrustNumbers, state: &[StateChannel], found: &mut dyn
             Verdict::Good,
             "no constraint was detected; one common to all movements cannot be detected".to_owned(),
             "if there is one, record movements without it",
-        ),
-        Hypothesis::Ambiguous => found(
-            Verdict::Doubtful,
-            format!(
-                "two readings explain these movements equally well, no constraint or one common to all: their policies differ by {}",
-                percent(numbers.gap)
-            ),
-            "set --reading free or --reading constrained, or record movements that cross the same places in other directions",
         ),
         Hypothesis::Unexplained => found(
             if numbers.held_out_error > WRONG { Verdict::DoNotUse } else { Verdict::Doubtful },
@@ -81,14 +79,50 @@ fn about_reading(numbers: &TrustNumbers, state: &[StateChannel], found: &mut dyn
         found(
             Verdict::Doubtful,
             format!("almost no movement along {direction} (coverage {coverage})"),
-            "record movements in that direction",
+            "record movements in that direction, or --ignore a channel that is no coordinate or follows from others",
         );
     }
+}
+
+/// Nothing was constrained, or one constraint always acted: who knows which may say so, where the learner heeds it.
+fn about_two_readings(
+    numbers: &TrustNumbers,
+    (learner, given): (LearnerChoice, Option<Hypothesis>),
+    found: &mut dyn FnMut(Verdict, String, &str),
+) {
+    let what = format!(
+        "two readings explain these movements equally well, no constraint or one common to all: their policies differ by {}",
+        percent(numbers.gap)
+    );
+    match (learner, given) {
+        (LearnerChoice::Auto, Some(Hypothesis::Free)) => {
+            found(Verdict::Good, what, "the policy is right if nothing was constrained, as given (--reading)");
+        }
+        (LearnerChoice::Auto, Some(_)) => {
+            found(Verdict::Good, what, "the policy is right if constraints acted, as given (--reading)");
+        }
+        (LearnerChoice::Auto, None) => found(
+            Verdict::Doubtful,
+            what,
+            "set --reading free or --reading constrained, or record movements that cross the same places in other directions",
+        ),
+        _ => found(
+            Verdict::Doubtful,
+            what,
+            "record movements that cross the same places in other directions, or use --learner auto with --reading free or --reading constrained",
+        ),
+    }
+}
+
+/// Whose number it is, where the policy handed out is not the Gaussian process's.
+fn by_gp(numbers: &TrustNumbers) -> &'static str {
+    if numbers.aligned.is_some() { " by the Gaussian process" } else { "" }
 }
 
 fn about_error(numbers: &TrustNumbers, found: &mut dyn FnMut(Verdict, String, &str)) {
     let expected = numbers.expected_error;
     let measured = numbers.aligned.is_some();
+    let by_gp = by_gp(numbers);
     if measured && expected > FAR && numbers.halves.is_some_and(|halves| halves < TrustNumbers::GOOD_HALVES) {
         found(
             Verdict::DoNotUse,
@@ -113,14 +147,17 @@ fn about_error(numbers: &TrustNumbers, found: &mut dyn FnMut(Verdict, String, &s
     if let Some(halves) = numbers.halves.filter(|&halves| halves > TrustNumbers::GOOD_HALVES) {
         found(
             if numbers.good_halves().is_some() { Verdict::Doubtful } else { Verdict::Good },
-            format!("policies learnt from two halves of the movements differ by {}", percent(halves)),
+            format!("policies learnt{by_gp} from two halves of the movements differ by {}", percent(halves)),
             "record more movements, from other starts, or reduce noise",
         );
     }
     if numbers.unknown > UNKNOWN {
         found(
             Verdict::Doubtful,
-            format!("between the demonstrations, the policy is uncertain on {} of the way", percent(numbers.unknown)),
+            format!(
+                "between the demonstrations, the policy{by_gp} is uncertain on {} of the way",
+                percent(numbers.unknown)
+            ),
             "record movements from starts in between; a roll-out shows where support ends",
         );
     }
@@ -158,7 +195,7 @@ fn about_episodes(numbers: &TrustNumbers, episodes: &[String], found: &mut dyn F
         let (episode, error, usual) = (&episodes[episode], percent(error), percent(usual));
         found(
             if spoils { Verdict::Doubtful } else { Verdict::Good },
-            format!("episode {episode} is predicted worst: error {error}, median {usual}"),
+            format!("episode {episode} is predicted worst{}: error {error}, median {usual}", by_gp(numbers)),
             "check it: another task, a tracking fault, or a place that no other movement visits? --hold-out learns without it",
         );
     }

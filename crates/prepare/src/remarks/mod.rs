@@ -4,6 +4,8 @@ mod end_places;
 mod held;
 mod integrals;
 mod no_state;
+mod odd_channels;
+mod other_units;
 mod pressing;
 mod speed_limit;
 
@@ -11,6 +13,8 @@ pub use end_places::end_places;
 pub(crate) use held::held;
 use motion::{Demonstrations, Finding, Trajectory, Verdict, standard_deviation};
 pub(crate) use no_state::no_state;
+pub(crate) use odd_channels::{is_switch, odd_channels};
+pub(crate) use other_units::other_units;
 pub use pressing::pressing;
 use speed_limit::speed_limit;
 
@@ -86,7 +90,7 @@ fn loops(demonstrations: &Demonstrations, notes: &mut Notes) {
         notes.found(
             Verdict::Good,
             format!("{loops} of {} episodes return to their start", demonstrations.n_trajectories()),
-            "a potential cannot explain a round trip: use --learner auto, which allows rotation, or split them",
+            "a potential cannot explain a round trip: split them for --learner policy-align; other learners allow rotation",
         );
     }
 }

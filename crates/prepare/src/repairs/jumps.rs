@@ -3,6 +3,7 @@ use motion::{Channel, Episode, Verdict};
 
 use crate::notes::Notes;
 use crate::numbers::short;
+use crate::remarks::is_switch;
 
 /// Shorter pieces than this are not worth learning from.
 const LEAST: usize = 4;
@@ -12,6 +13,7 @@ const MANY: f64 = 0.2;
 /// Cuts episodes where a single step stands out from all about it: samples are missing there, or one is wrong.
 pub(crate) fn cut(episodes: &mut Vec<Episode>, channels: &[Channel], notes: &mut Notes) {
     let (count, mut cut, mut first) = (episodes.len(), 0, None);
+    let switches: Vec<usize> = (0..channels.len()).filter(|&axis| is_switch(episodes, axis)).collect();
     *episodes = episodes
         .drain(..)
         .flat_map(|episode| {
@@ -22,7 +24,7 @@ pub(crate) fn cut(episodes: &mut Vec<Episode>, channels: &[Channel], notes: &mut
             pieces(&episode, &jumps, notes)
         })
         .collect();
-    let Some(first) = first else { return };
+    let Some((first, axis)) = first else { return };
     let some = if cut == 1 { "1 episode" } else { &format!("{cut} episodes") };
     notes.decided("jumps", format!("{some} split"), "one step is far longer than its neighbours", "--jumps");
     let verdict = if f64::from(cut) > MANY * count as f64 { Verdict::Doubtful } else { Verdict::Good };
@@ -30,20 +32,26 @@ pub(crate) fn cut(episodes: &mut Vec<Episode>, channels: &[Channel], notes: &mut
     notes.found(
         verdict,
         format!("{cut} of {count} episodes {verb} ({first})"),
-        "check for missing samples, lost tracking or wrapped angles (--jumps keep)",
+        if switches.contains(&axis) {
+            format!("--ignore {}, which is a switch (--jumps keep)", channels[axis].name)
+        } else {
+            "check for missing samples, lost tracking or wrapped angles (--jumps keep)".to_owned()
+        },
     );
 }
 
-fn described(episode: &Episode, jump: &LongStep, channels: &[Channel]) -> String {
+/// A jump in words, and the channel that jumps most.
+fn described(episode: &Episode, jump: &LongStep, channels: &[Channel]) -> (String, usize) {
     let step = episode.step(jump.sample);
     let most = step.icamax();
-    format!(
+    let text = format!(
         "{}: '{}' changes by {}, the step is {:.0} times the usual one",
         episode.place(jump.sample + 1),
         channels[most].name,
         short(step[most]),
         jump.times
-    )
+    );
+    (text, most)
 }
 
 fn pieces(episode: &Episode, jumps: &[LongStep], notes: &mut Notes) -> Vec<Episode> {

@@ -11,7 +11,7 @@ use crate::{Fault, ReadError, SamplesAre};
 /// A text of which the first records have been read: they say how to read all others.
 pub(super) struct Beginning<'a> {
     pub(super) dialect: Dialect,
-    header: Option<Vec<String>>,
+    pub(super) header: Option<Vec<String>>,
     /// The first records with their lines.
     pub(super) head: Vec<(u64, ByteRecord)>,
     /// Those that follow.
@@ -36,7 +36,12 @@ impl<'a> Beginning<'a> {
             let Some(line) = records.next(&mut record)? else { break };
             head.push((line, record.clone()));
         }
-        Ok(Self { dialect, header, head, records })
+        // What columns hold is judged by these records.
+        let again = |(_, record): &&(u64, ByteRecord)| header.as_ref().is_some_and(|names| is_header(record, names));
+        match head.iter().find(again) {
+            Some((line, _)) => Err(header_again(*line, &input.name)),
+            None => Ok(Self { dialect, header, head, records }),
+        }
     }
 
     /// Whether each line is a channel.
@@ -81,6 +86,18 @@ impl<'a> Beginning<'a> {
         }
         Ok(table)
     }
+}
+
+/// Whether a record is the header once more.
+pub(super) fn is_header(record: &ByteRecord, names: &[String]) -> bool {
+    let is_name = |(field, name): (&[u8], &String)| field.trim_ascii() == name.as_bytes();
+    names.len() == record.len() && record.iter().zip(names).all(is_name)
+}
+
+/// Of a text that was joined from several.
+pub(super) fn header_again(line: u64, file: &str) -> ReadError {
+    let remedy = "the files as they were before they were joined (several can be named), or one header, and a column that tells episodes apart";
+    ReadError::NotANumber(Fault::new("the header is repeated", format!("{file}, line {line}"), remedy))
 }
 
 /// The first record if it is a header; otherwise it goes to `head`.

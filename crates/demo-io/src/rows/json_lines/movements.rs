@@ -32,15 +32,28 @@ impl Form {
         let of_columns = if alone {
             values.iter().any(|(_, value)| is_list(value))
         } else {
-            values.iter().any(|(name, value)| is_time(name) && is_list(value))
+            values.iter().any(|(name, value)| is_time(name) && is_list(value)) || Self::is_long(values)
         };
         if of_columns { Form::Columns } else { Form::Other }
+    }
+
+    /// Whether lists without stamps are columns, not the numbers of one sample: all are as long as each other, and long. A sample says when
+    /// it was taken.
+    fn is_long(values: &[(String, Json)]) -> bool {
+        let mut lengths = values.iter().filter(|(_, value)| depth(value) == 1).filter_map(|(_, value)| value.list());
+        let Some(first) = lengths.next().map(<[Json]>::len) else { return false };
+        first >= LONG && lengths.all(|list| list.len() == first) && !values.iter().any(|(name, _)| is_time(name))
     }
 
     fn is_movement(self) -> bool {
         self != Form::Other
     }
 }
+
+/// Lists of so many numbers are longer than most states.
+const LONG: usize = 32;
+/// What a time step is called.
+const STEPS: [&str; 2] = ["dt", "time_step"];
 
 /// How deep lists nest, by the first of each; 0 of what is no list, or an empty one.
 fn depth(value: &Json) -> usize {
@@ -99,19 +112,27 @@ fn joined(entry: Json, name: Option<&str>, shared: &[(String, Json)]) -> Json {
 }
 
 /// The samples of an object of lists, as objects, each with what is no list: `{"t": 0, "x": 0}`. Lists of another length than the
-/// longest are left out.
+/// longest are left out. A time step becomes stamps where there are none.
 pub(super) fn rows_of_columns(entry: &Json, episode: Option<&str>) -> Vec<Json> {
     let Json::Map(values) = entry else { return Vec::new() };
     let length = values.iter().filter_map(|(_, value)| value.list()).map(<[Json]>::len).max().unwrap_or(0);
-    let columns = values.iter().filter(|(_, value)| value.list().is_none_or(|list| list.len() == length));
+    let fits = |value: &Json| value.list().is_none_or(|list| list.len() == length);
+    let stamped = values.iter().any(|(name, value)| is_time(name) && fits(value));
+    let is_step = |(name, value): &&(String, Json)| {
+        !stamped && STEPS.contains(&&name[..]) && value.number().is_some_and(f64::is_finite)
+    };
+    let step = values.iter().find(is_step).and_then(|(_, value)| value.number());
+    let columns = values.iter().filter(|(_, value)| fits(value)).filter(|value| step.is_none() || !is_step(value));
     let columns: Vec<&(String, Json)> = columns.collect();
     let row = |at: usize| {
         let own = columns.iter().map(|(name, value)| {
             let value = value.list().map_or(value, |list| &list[at]);
             (name.clone(), value.clone())
         });
+        let stamp = step.map(|step| ("t".to_owned(), Json::Number(at as f64 * step)));
         let label = episode.filter(|_| columns.iter().all(|(name, _)| name != "episode"));
-        Json::Map(own.chain(label.map(|label| ("episode".to_owned(), Json::Text(label.to_owned())))).collect())
+        let label = label.map(|label| ("episode".to_owned(), Json::Text(label.to_owned())));
+        Json::Map(stamp.into_iter().chain(own).chain(label).collect())
     };
     (0..length).map(row).collect()
 }
@@ -137,6 +158,21 @@ mod tests {
             ("[1, 2]", true, Form::Other),
         ] {
             assert_eq!(Form::of(&json(text), alone), form, "{text}");
+        }
+    }
+
+    /// Lists of one length that no sample has are the columns of a movement, unless a stamp says when the sample was taken.
+    #[test]
+    fn long_lists_without_stamps_are_columns() {
+        let list = |length: usize| format!("[{}]", vec!["0"; length].join(","));
+        for (text, form) in [
+            (format!(r#"{{"x": {}, "y": {}}}"#, list(40), list(40)), Form::Columns),
+            (format!(r#"{{"dt": 0.1, "x": {}}}"#, list(40)), Form::Columns),
+            (format!(r#"{{"x": {}, "y": {}}}"#, list(40), list(39)), Form::Other),
+            (format!(r#"{{"t": 0.1, "x": {}, "y": {}}}"#, list(40), list(40)), Form::Other),
+            (format!(r#"{{"q": {}, "v": {}}}"#, list(22), list(22)), Form::Other),
+        ] {
+            assert_eq!(Form::of(&json(&text), false), form, "{text}");
         }
     }
 
@@ -170,5 +206,11 @@ mod tests {
         let expected =
             json(r#"[{"t": 0, "x": 2, "goal": 4, "episode": "a"}, {"t": 1, "x": 3, "goal": 4, "episode": "a"}]"#);
         assert_eq!(rows_of_columns(&entry, Some("a")), expected.list().unwrap());
+        let entry = json(r#"{"dt": 0.5, "x": [2, 3]}"#);
+        let expected = json(r#"[{"t": 0.0, "x": 2, "episode": "a"}, {"t": 0.5, "x": 3, "episode": "a"}]"#);
+        assert_eq!(rows_of_columns(&entry, Some("a")), expected.list().unwrap());
+        let entry = json(r#"{"dt": 0.5, "t": [0, 1], "x": [2, 3]}"#);
+        let expected = json(r#"[{"dt": 0.5, "t": 0, "x": 2}, {"dt": 0.5, "t": 1, "x": 3}]"#);
+        assert_eq!(rows_of_columns(&entry, None), expected.list().unwrap());
     }
 }

@@ -125,7 +125,7 @@ pub(crate) struct ReadFlags {
 pub(crate) struct PrepareFlags {
     /// Scale a channel, as z=10
     #[arg(long, value_name = "NAME=FACTOR", value_delimiter = ',')]
-    scale: Vec<String>,
+    pub(crate) scale: Vec<String>,
     /// Velocities: auto, velocity (recorded) or displacement (from positions)
     #[arg(long, value_name = "SOURCE", hide_possible_values = true, value_parser = words::<VelocityUse>())]
     integration: Option<String>,
@@ -148,7 +148,7 @@ pub(crate) struct FitFlags {
     /// Learner: auto, policy-align, slope or direct [default: auto]
     #[arg(long, value_name = "LEARNER", hide_possible_values = true, value_parser = words::<LearnerChoice>())]
     learner: Option<String>,
-    /// Reading of the movements, if known: free or constrained
+    /// For auto: reading of the movements, if known: free or constrained
     #[arg(long, value_name = "READING", hide_possible_values = true, value_parser = words::<Hypothesis>())]
     reading: Option<String>,
     /// For policy-align: auto, narrow, medium, wide or σ² [default: auto]
@@ -157,7 +157,7 @@ pub(crate) struct FitFlags {
     /// For policy-align: auto or 1 / squared width of fields [default: auto]
     #[arg(long, value_name = "NUMBER")]
     init_d: Option<String>,
-    /// Folds of cross-validation [default: 5]
+    /// For policy-align: folds of cross-validation [default: 5]
     #[arg(long, value_name = "NUMBER")]
     folds: Option<usize>,
     /// Random seed [default: 1]

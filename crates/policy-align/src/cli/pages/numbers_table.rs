@@ -48,17 +48,18 @@ impl Good {
 
 /// A table of numbers, those that there are: what they are, their values, and which would be good. What is not good is marked by a
 /// sign, a colour and a word for those who see neither, and counted below the table.
-pub(crate) fn numbers<'a>(rows: impl IntoIterator<Item = (&'a str, Option<f64>, Good)>) -> Markup {
-    let rows: Vec<(&str, f64, Good)> =
+pub(crate) fn numbers<S: AsRef<str>>(rows: impl IntoIterator<Item = (S, Option<f64>, Good)>) -> Markup {
+    let rows: Vec<(S, f64, Good)> =
         rows.into_iter().filter_map(|(what, value, good)| Some((what, value?, good))).collect();
     let bad = rows.iter().filter(|(_, value, good)| good.refuses(*value)).count();
-    let cells = |&(what, value, good): &(&str, f64, Good)| {
+    let cells = |(what, value, good): &(S, f64, Good)| {
+        let (value, good) = (*value, *good);
         let value = if good.refuses(value) {
             html! { span .bad { span aria-hidden="true" { "✗ " } span .unseen { "not good: " } (short(value)) } }
         } else {
             html! { (short(value)) }
         };
-        vec![html! { (what) }, value, html! { (good.words()) }]
+        vec![html! { (what.as_ref()) }, value, html! { (good.words()) }]
     };
     html! {
         (table(&COLUMNS, &rows.iter().map(cells).collect::<Vec<_>>()))

@@ -7,7 +7,9 @@ use nalgebra::{DMatrix, DVectorView, Point3, Vector3};
 use page::{Card, Part};
 use plot::{Camera, Frame, Item, Space};
 use policy_align::{Model, Prepared, StateChannel};
+use text::plain;
 
+use crate::cli::lines::short;
 use crate::cli::pages::constraint_marks::recorded;
 use crate::cli::pages::movements::evenly;
 use crate::cli::pages::page_parts::part;
@@ -67,7 +69,13 @@ fn in_space(model: &Model, movements: &[DMatrix<f64>]) -> Markup {
     let starts = movements.iter().map(|movement| place(movement.column(0))).collect();
     let starts = Item::Dots { points: starts, color: DEMONSTRATED.color, radius: 2.6 };
     let end = |of: fn(&StateChannel) -> f64| Point3::from(Vector3::from_fn(|k, _| factors[k] * of(&model.state[k])));
-    let labels = [0, 1, 2].map(|k| with_unit(&model.state[k], factors[k]));
+    // The larger pictures say where no unit was given; here is no room for it.
+    let label = |k: usize| match &model.state[k] {
+        StateChannel { unit: None, name, .. } if factors[k] == 1.0 => plain(name).into_owned(),
+        StateChannel { unit: None, name, .. } => plain(&format!("{name} times {}", short(factors[k]))).into_owned(),
+        channel => with_unit(channel, factors[k]),
+    };
+    let labels = [0, 1, 2].map(label);
     let frame = Frame { lowest: end(|channel| channel.low), highest: end(|channel| channel.high), labels };
     let space = Space {
         title: String::new(),

@@ -91,45 +91,68 @@ fn field(model: &Model, prepared: &Prepared, found: &[ConstraintStretch]) -> Mar
 fn numbers(model: &Model) -> Markup {
     let numbers = &model.trust.numbers;
     let worst = numbers.episode_errors.iter().map(|&(_, error)| error).max_by(f64::total_cmp);
+    // Beside PolicyAlign's policy stands that of a Gaussian process, of which some numbers are.
+    let aligned = numbers.aligned.as_ref();
+    let of =
+        |what: &str, learner: &str| if aligned.is_some() { format!("{what} ({learner})") } else { what.to_owned() };
+    let (gp, slope) = ("of the Gaussian process", "of the slope GP");
     let of_policy = [
         (
-            "Cross-validated error along the observed motion",
+            of("Cross-validated error along the observed motion, relative to the policy", "of PolicyAlign"),
             Some(numbers.held_out_error),
             Good::Below(TrustNumbers::GOOD_HELD_OUT_ERROR),
         ),
-        ("The same for the direct learner (plain averaging)", Some(numbers.held_out_error_direct), Good::COMPARED),
-        ("Cross-validated error of the direct learner in all directions", Some(numbers.direct_error), Good::COMPARED),
         (
-            "Error expected from the posterior variance",
+            "The same for the direct learner (plain averaging)".to_owned(),
+            Some(numbers.held_out_error_direct),
+            Good::COMPARED,
+        ),
+        (
+            "Cross-validated error of the direct learner in all directions".to_owned(),
+            Some(numbers.direct_error),
+            Good::COMPARED,
+        ),
+        (
+            if aligned.is_some() {
+                "Expected error: by the difference from the Gaussian process and its posterior variance".to_owned()
+            } else {
+                "Error expected from the posterior variance".to_owned()
+            },
             Some(numbers.expected_error),
             Good::Below(numbers.good_expected_error()),
         ),
-        ("Difference between slope and direct policy", Some(numbers.gap), Good::Words("large where constraints acted")),
-        ("Cross-validated error of the worst episode", worst, Good::Words("near that of all episodes")),
         (
-            "Difference between the policies learnt from either half of the episodes",
+            of("Difference between slope and direct policy", "both Gaussian processes"),
+            Some(numbers.gap),
+            Good::Words("large where constraints acted"),
+        ),
+        (of("Cross-validated error of the worst episode", gp), worst, Good::Words("near that of all episodes")),
+        (
+            of("Difference between the policies learnt from either half of the episodes", gp),
             numbers.halves,
             numbers.good_halves().map_or(Good::Words("any: the expected error is small"), Good::Below),
         ),
         (
-            "Squared errors divided by the variance that the policy predicts; 1 where it predicts its errors",
+            of(
+                "Squared errors divided by the variance that the policy predicts; 1 where it predicts its errors",
+                slope,
+            ),
             Some(numbers.z_squared),
             Good::Below(4.0),
         ),
-        (COVERAGE.0, Some(numbers.direction_coverage), COVERAGE.1),
+        (COVERAGE.0.to_owned(), Some(numbers.direction_coverage), COVERAGE.1),
         (
-            "Rotation: share of the policy that no potential explains",
+            of("Rotation: share of the policy that no potential explains", slope),
             Some(numbers.rotation_share),
             Good::Words("0 for a potential"),
         ),
         (
-            "Share of rollouts that leave the demonstrated region",
+            of("Share of rollouts that leave the demonstrated region", "of PolicyAlign"),
             Some(numbers.leaving),
             Good::Below(TrustNumbers::GOOD_LEAVING),
         ),
-        (NOISE.0, Some(numbers.step_noise), NOISE.1),
+        (NOISE.0.to_owned(), Some(numbers.step_noise), NOISE.1),
     ];
-    let aligned = numbers.aligned.as_ref();
     let kept = |aligned: &AlignedNumbers| aligned.kept as f64 / (aligned.kept + aligned.discarded) as f64;
     let of_alignment = [
         ("Share of the episodes that were aligned", aligned.map(kept), Good::Words("near 1")),
@@ -141,6 +164,7 @@ fn numbers(model: &Model) -> Markup {
         ),
         ("Difference from the Gaussian process", aligned.map(|aligned| aligned.difference), Good::Below(0.1)),
     ];
+    let of_alignment = of_alignment.map(|(what, value, good)| (what.to_owned(), value, good));
     let [unseen, least_known] = [&numbers.unseen_direction, &numbers.least_known_direction]
         .map(|direction| direction_by_channels(direction, &model.state));
     html! {

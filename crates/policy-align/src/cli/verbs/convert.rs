@@ -56,6 +56,9 @@ impl Convert {
             _ => reading.context,
         };
         let matching = self.robot.write(&self.output, &recordings, &context)?;
+        if session.json {
+            return Ok(Output::written([&*self.output]));
+        }
         let samples = recordings.episodes.iter().map(|episode| episode.times.len()).sum();
         let mut lines = Lines::default();
         lines.written(&self.output, &amount(recordings.episodes.len(), samples));

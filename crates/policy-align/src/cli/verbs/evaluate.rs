@@ -23,8 +23,11 @@ const LISTED: usize = 5;
 /// Evaluate a model on other recordings
 #[derive(Debug, Args)]
 #[command(after_help = "\
-Errors are squared: 0 is exact, 1 as good as standing still.
-Exit code 1 if --require is not met.
+Errors are squared: 0 is exact, 1 as good as standing still. They are errors
+along the motion, for a recording shows no other direction. With --truth, the
+error in all directions (nUPE) is measured, too.
+Exit code 1 if --require is not met: by the error relative to the policy, with
+--leave-constraint-out also by that of each, and with --truth by the nUPE.
 All flags of reading files: policy-align check --help
 
 Examples:
@@ -42,7 +45,7 @@ pub(crate) struct Evaluate {
     /// Cross-validate over constraints: learn without each, evaluate on it
     #[arg(long)]
     leave_constraint_out: bool,
-    /// Largest policy error allowed
+    /// Largest error allowed, relative to the policy
     #[arg(long, value_name = "ERROR")]
     require: Option<f64>,
     #[command(flatten)]
@@ -63,10 +66,9 @@ impl Evaluate {
             Failure::new(Exit::Refused, error.to_string(), named(&self.files), remedy)
         })?;
         let left_out = if self.leave_constraint_out { self.left_out(session, &model, &prepared)? } else { vec![] };
-        let too_large = |judged: &Evaluation, most: f64| judged.policy_error.is_nan() || judged.policy_error > most;
-        let failed = self.require.is_some_and(|most| {
-            too_large(&judged, most) || left_out.iter().any(|left| too_large(&left.evaluation, most))
-        });
+        let largest = left_out.iter().map(|left| &left.evaluation).chain([&judged]);
+        let required: Vec<f64> = largest.map(|judged| judged.policy_error).chain(judged.nupe).collect();
+        let failed = self.require.is_some_and(|most| required.iter().any(|&error| error.is_nan() || error > most));
         let exit = if failed { Exit::Refused } else { Exit::Done };
         let training = training(&model, &self.files)?;
         if session.json {
@@ -90,7 +92,13 @@ impl Evaluate {
             tell_by_constraint(&by_constraint(&prepared, &judged), &mut lines);
         }
         if let Some(most) = self.require {
-            lines.add("required", &format!("at most {}: {}", short(most), if failed { "not met" } else { "met" }));
+            let of = if judged.nupe.is_some() {
+                "the error relative to the policy, along the motion, and the nUPE, in all directions"
+            } else {
+                "the error relative to the policy, along the motion; --truth also requires it in all directions"
+            };
+            let met = if failed { "not met" } else { "met" };
+            lines.add("required", &format!("at most {}: {met} ({of})", short(most)));
         }
         Ok(Output { text: lines.into_text(), exit })
     }

@@ -6,12 +6,13 @@ use nalgebra::DVector;
 use policy_align::{CSource, ExportError, Model, Precision, spread_starts, to_lerobot, to_onnx};
 use text::quoted;
 
+use crate::cli::context::{chosen_context, in_context};
 use crate::cli::failure::{Exit, Failure, displayed};
 use crate::cli::given::no_input;
 use crate::cli::lines::{Lines, counted, list, size};
 use crate::cli::options::config::Config;
 use crate::cli::options::rollout_flags::RollOutFlags;
-use crate::cli::options::values::{in_context, numbers};
+use crate::cli::options::values::numbers;
 use crate::cli::session::{Output, Session, write_together};
 use crate::cli::trust_files::load;
 use crate::cli::verbs::rollout::{followed, write_paths};
@@ -46,9 +47,9 @@ pub(crate) struct Export {
     /// File or folder to write [default: the model's name, .c and so on]
     #[arg(long, short, value_name = "FILE")]
     output: Option<PathBuf>,
-    /// Name of the C function
-    #[arg(long, default_value = "policy")]
-    name: String,
+    /// Name of the C function [default: policy]
+    #[arg(long, value_name = "NAME")]
+    name: Option<String>,
     /// C in single precision: compare its actions with double's
     #[arg(long)]
     float: bool,
@@ -82,13 +83,19 @@ impl Export {
     pub(crate) fn run(&self, session: &Session) -> Result<Output, Failure> {
         let model = load(session, &self.model)?;
         let output = |extension| self.output.clone().unwrap_or_else(|| self.model.with_extension(extension));
+        if self.to != Target::Mcap && !self.context.is_empty() {
+            let what = "an exported policy takes its context as an input: only roll-outs have one chosen";
+            return Err(Failure::usage(what, "--context", "no --context, or --to mcap"));
+        }
         if self.to != Target::Mcap
-            && (!self.from.is_empty()
-                || !self.context.is_empty()
-                || self.robot.path().is_some()
-                || self.follow != RollOutFlags::default())
+            && (!self.from.is_empty() || self.robot.path().is_some() || self.follow != RollOutFlags::default())
         {
             return Err(Failure::usage("only MCAP holds roll-outs", "roll-out flags", "--to mcap"));
+        }
+        for (flag, given) in [("--name", self.name.is_some()), ("--float", self.float)] {
+            if given && self.to != Target::C {
+                return Err(Failure::usage("only C has this choice", flag, format!("--to c, or no {flag}")));
+            }
         }
         let precision = if self.float { Precision::Single } else { Precision::Double };
         let whole = |output: &Path, bytes: Vec<u8>| vec![(output.to_owned(), bytes)];
@@ -102,7 +109,8 @@ impl Export {
                 (folder, files, LOAD_LEROBOT)
             }
             Target::C => {
-                let source = CSource { name: self.name.clone(), precision }.of(&model);
+                let source =
+                    CSource { name: self.name.clone().unwrap_or_else(|| "policy".to_owned()), precision }.of(&model);
                 (output("c"), source.map(|text| whole(&output("c"), text.into_bytes())), "cc -std=c99 -O2 -c")
             }
         };
@@ -120,6 +128,9 @@ impl Export {
             std::fs::create_dir_all(&output).map_err(|error| Failure::writing(&output, error))?;
         }
         write_together(&files)?;
+        if session.json {
+            return Ok(Output::written(files.iter().map(|(file, _)| &**file)));
+        }
         let bytes = files.iter().map(|(_, bytes)| bytes.len()).sum();
         let mut lines = Lines::default();
         lines.add("written", &format!("{} ({})", output.display(), size(bytes)));
@@ -137,6 +148,7 @@ impl Export {
         no_input(output, &inputs)?;
         let flags = Config::of(session)?.under("rollout", &self.follow)?;
         let model = &in_context(model.clone(), &self.context)?;
+        chosen_context(model)?;
         let given = self.from.iter().map(|from| Ok(DVector::from_vec(numbers(from, "--from")?)));
         let mut starts = given.collect::<Result<Vec<_>, Failure>>()?;
         if starts.is_empty() {
@@ -149,6 +161,9 @@ impl Export {
         let paths = starts.iter().map(|start| followed(&flags, model, start, &list(start.iter().copied())));
         let paths = paths.collect::<Result<Vec<_>, _>>()?;
         let matching = write_paths(output, model, &paths, &self.robot)?;
+        if session.json {
+            return Ok(Output::written([output]));
+        }
         let samples = paths.iter().map(|path| path.times.len()).sum();
         let mut lines = Lines::default();
         lines.written(output, &format!("{}, {}", counted(paths.len(), "roll-out"), counted(samples, "sample")));

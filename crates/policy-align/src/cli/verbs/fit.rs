@@ -19,12 +19,15 @@ use crate::cli::given::no_input;
 use crate::cli::lines::{Lines, amount, counted, size, squared_error};
 use crate::cli::options::config::{Config, printed};
 use crate::cli::options::flags::{FitFlags, PrepareFlags, ReadFlags};
+use crate::cli::options::without_effect::of_learner;
 use crate::cli::pages::trust_page::trust_page;
 use crate::cli::recorded::{base_name, known_episode, named, read_pieces, unreported};
 use crate::cli::session::{Output, Session, write_together};
 use crate::cli::trust_files::{MEMBER, trust_files, warn_of_others};
 use crate::cli::verbs::check::{findings, left_out};
 
+/// The flag of what a robot decides.
+const ROBOT: &str = "--robot";
 /// Where the model goes, unless a name is given.
 const MODEL: &str = "model.json";
 
@@ -77,6 +80,7 @@ impl Fit {
         no_input(&self.output(), &inputs)?;
         let (mut prepare_options, fit_options) = (preparing.options(reading.dt)?, learning.options()?);
         let place = || named(&self.files);
+        of_learner(&self.learning, fit_options.learner)?;
         let shard = self.shard.as_deref().map(shard).transpose()?;
         let division = division(session, &self.files, (&reading, &learning), &fit_options)?;
         let recordings;
@@ -119,7 +123,8 @@ impl Fit {
         warn_of_others(session, &self.output(), &checksum);
         let report: Vec<PathBuf> = files.into_iter().skip(1).map(|(path, _)| path).collect();
         let unreported = unreported(&model.trust.findings, &reported);
-        Ok(self.said(session, (&model, &unreported), &report, judged.as_ref()))
+        let with_robot = fit_options.robot.is_some();
+        Ok(self.said(session, (&model, &unreported, with_robot), &report, judged.as_ref()))
     }
 
     fn output(&self) -> PathBuf {
@@ -139,7 +144,7 @@ impl Fit {
     fn said(
         &self,
         session: &Session,
-        (model, unreported): (&Model, &[Finding]),
+        (model, unreported, with_robot): (&Model, &[Finding], bool),
         written: &[PathBuf],
         held_out: Option<&Evaluation>,
     ) -> Output {
@@ -161,17 +166,26 @@ impl Fit {
             lines.add("left out", &left_out);
         }
         let is_major = |of: &&Decision| {
-            ["at once", "rows", "learner"].contains(&of.what.as_str()) || (of.what == "scale" && of.why != "given")
+            ["at once", "rows", "learner"].contains(&of.what.as_str())
+                || (of.what == "scale" && of.why != "given")
+                || of.flag == ROBOT
         };
         for Decision { what, value, why, .. } in model.decisions.iter().filter(is_major) {
             lines.add(what, &format!("{value} ({why})"));
         }
+        if with_robot && model.decisions.iter().all(|of| of.flag != ROBOT) {
+            let joints = counted(model.state.len(), "channel");
+            let what =
+                "neither its inertia nor constraints of its links predict movements better: learnt as without it";
+            lines.add("robot", &format!("has joints for {joints}; {what}"));
+        }
         let numbers = &model.trust.numbers;
         let [own, direct] = [numbers.held_out_error, numbers.held_out_error_direct].map(squared_error);
-        lines.add("held out", &format!("error: {own} (direct learner: {direct})"));
+        lines.add("error", &format!("cross-validated, relative to the policy: {own} (direct learner: {direct})"));
         if let Some(judged) = held_out {
             let episodes = counted(judged.episodes.len(), "episode");
-            lines.add("hold-out", &format!("error on {episodes}: {}", squared_error(judged.policy_error)));
+            let error = squared_error(judged.policy_error);
+            lines.add("hold-out", &format!("{episodes}, not learnt from: error relative to the policy {error}"));
         }
         lines.add("trust", verdict(model));
         findings(unreported, 3, &mut lines);

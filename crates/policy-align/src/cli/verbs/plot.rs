@@ -5,6 +5,7 @@ use nalgebra::DVector;
 use policy_align::{Model, spread_starts};
 use text::quoted;
 
+use crate::cli::context::in_context;
 use crate::cli::describe::context_flag;
 use crate::cli::failure::Failure;
 use crate::cli::given::{flag_words, no_input, value_word};
@@ -12,7 +13,8 @@ use crate::cli::lines::{Lines, list, short};
 use crate::cli::options::config::Config;
 use crate::cli::options::flags::{PrepareFlags, ReadFlags};
 use crate::cli::options::rollout_flags::RollOutFlags;
-use crate::cli::options::values::{in_context, numbers};
+use crate::cli::options::values::numbers;
+use crate::cli::options::without_effect::{of_reading, of_roll_outs};
 use crate::cli::pages::constraint_marks::{held, recorded};
 use crate::cli::pages::picture::{Picture, draw};
 use crate::cli::recorded::{acted, base_name, prepared_for, read};
@@ -68,6 +70,12 @@ pub(crate) struct Plot {
 impl Plot {
     pub(crate) fn run(&self, session: &Session) -> Result<Output, Failure> {
         no_input(&self.output, &[&self.files[..], std::slice::from_ref(&self.model)].concat())?;
+        if self.files.is_empty() {
+            of_reading(&self.read)?;
+        }
+        if let Some(flag) = of_roll_outs(&self.follow).filter(|_| self.rollout.is_empty()) {
+            session.warn(&format!("{flag} does not change the picture: --rollout with a start draws a roll-out"));
+        }
         let config = Config::of(session)?;
         let flags = config.under("rollout", &self.follow)?;
         let model = in_context(load(session, &self.model)?, &self.read.context)?.in_usual_context();
@@ -98,6 +106,9 @@ impl Plot {
         let followed = paths.collect::<Result<_, Failure>>()?;
         let picture = Picture { title, model: &model, dims, demonstrated, held, followed };
         write(&self.output, &draw(&self.output, &picture, self.size)?)?;
+        if session.json {
+            return Ok(Output::written([&*self.output]));
+        }
         let mut lines = Lines::default();
         let [across, up] = dims.map(|dim| &model.state[dim].name);
         lines.written(&self.output, &format!("{across} across, {up} up"));

@@ -8,11 +8,12 @@ use policy_align::{Model, ModelPolicy, StateChannel};
 use rayon::prelude::*;
 use serde_json::{Value, json};
 
+use crate::cli::context::in_context;
 use crate::cli::describe::context_flag;
 use crate::cli::failure::{Exit, Failure};
 use crate::cli::given::no_input;
 use crate::cli::lines::{Lines, counted, list, short};
-use crate::cli::options::values::{in_context, numbers};
+use crate::cli::options::values::numbers;
 use crate::cli::session::{Output, Session, write};
 use crate::cli::table::states;
 use crate::cli::trust_files::load;
@@ -109,17 +110,19 @@ impl Predict {
         let predictions: Vec<Prediction> = blocks.par_iter().flat_map_iter(predict).collect();
         bar.finish_and_clear();
         let predictions = self.with_outside(predictions)?;
+        if let Some(path) = &self.output {
+            let read: Vec<PathBuf> = [Some(&self.model), self.states.as_ref()].into_iter().flatten().cloned().collect();
+            no_input(path, &read)?;
+            write(path, csv(&model, &states, &predictions).as_bytes())?;
+        }
         if session.json {
             return Ok(Output::json(&document(&model, &states, &predictions), Exit::Done));
         }
-        if let (Some(_), None) = (&self.at, &self.output) {
-            return Ok(Output::done(one_prediction(&model, &predictions[0])));
-        }
-        let text = csv(&model, &states, &predictions);
-        let Some(path) = &self.output else { return Ok(Output::done(text)) };
-        let read: Vec<PathBuf> = [Some(&self.model), self.states.as_ref()].into_iter().flatten().cloned().collect();
-        no_input(path, &read)?;
-        write(path, text.as_bytes())?;
+        let Some(path) = &self.output else {
+            let is_one = self.at.is_some();
+            let one = || one_prediction(&model, &predictions[0]);
+            return Ok(Output::done(if is_one { one() } else { csv(&model, &states, &predictions) }));
+        };
         let unsupported = predictions.iter().filter(|prediction| !prediction.supported).count();
         let states = counted(predictions.len(), "state");
         let mut lines = Lines::default();

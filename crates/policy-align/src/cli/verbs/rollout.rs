@@ -7,12 +7,13 @@ use nalgebra::DVector;
 use policy_align::{Model, Path, RollOutError, Stop};
 use serde_json::json;
 
+use crate::cli::context::{chosen_context, in_context};
 use crate::cli::failure::{Exit, Failure};
 use crate::cli::given::{again, no_input};
 use crate::cli::lines::{Lines, counted, list, short};
 use crate::cli::options::config::Config;
 use crate::cli::options::rollout_flags::RollOutFlags;
-use crate::cli::options::values::{in_context, numbers};
+use crate::cli::options::values::numbers;
 use crate::cli::pages::picture::{Picture, SIZE, draw};
 use crate::cli::recorded::base_name;
 use crate::cli::session::{Output, Session, write};
@@ -69,6 +70,7 @@ impl RollOut {
     pub(crate) fn run(&self, session: &Session) -> Result<Output, Failure> {
         let flags = Config::of(session)?.under("rollout", &self.follow)?;
         let model = in_context(load(session, &self.model)?, &self.context)?;
+        chosen_context(&model)?;
         let start = DVector::from_vec(numbers(&self.from, "--from")?);
         let inputs: Vec<PathBuf> = iter::once(&*self.model).chain(self.robot.path()).map(Into::into).collect();
         for output in [&self.output, &self.plot].into_iter().flatten() {

@@ -7,10 +7,10 @@ use text::quoted;
 
 use super::node::{CommandMessage, RobotNode};
 use super::status::Status;
+use crate::cli::context::in_context;
 use crate::cli::describe::context_flag;
 use crate::cli::failure::{Exit, Failure, displayed};
 use crate::cli::interrupt::{await_interrupt, interrupted};
-use crate::cli::options::values::in_context;
 use crate::cli::session::{Output, Session, complain};
 use crate::cli::trust_files::load;
 

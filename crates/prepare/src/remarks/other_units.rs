@@ -1,0 +1,147 @@
+//! Episodes in another unit than the others.
+
+use motion::{Episode, Finding, Verdict, standard_deviation, upper_median};
+use nalgebra::DVector;
+
+use crate::numbers::counted;
+
+/// Sizes of movements in one unit leave no gap as large as this factor …
+const GAP: f64 = 8.0;
+/// … between groups that differ by this one.
+const APART: f64 = 30.0;
+/// Fewer movements have no usual size.
+const FEWEST: usize = 4;
+/// Episodes that are named.
+const NAMED: usize = 5;
+/// A factor between units explains one that is this factor from it at most: movements differ in size.
+const NEAR: f64 = 3.0;
+/// What follows the name of an episode in that of its pieces.
+const PIECE: &str = " from sample ";
+/// Factors between units.
+const FACTORS: [(f64, &str); 3] =
+    [(1000.0, "millimetres among metres?"), (100.0, "centimetres among metres?"), (57.3, "degrees among radians?")];
+
+/// Says which episodes are so many times as large as the others that their unit is another one, it seems: sizes fall into two groups, of
+/// which the smaller is named.
+///
+/// `scales`: the factor on each channel, (n).
+pub(crate) fn other_units(episodes: &[Episode], scales: &DVector<f64>) -> Option<Finding> {
+    let mut sizes: Vec<(f64, &Episode)> = episodes.iter().map(|episode| (size(episode, scales), episode)).collect();
+    sizes.retain(|(size, _)| *size > 0.0);
+    sizes.sort_by(|(a, _), (b, _)| a.total_cmp(b));
+    if sizes.len() < FEWEST {
+        return None;
+    }
+    let gap = |at: &usize| sizes[*at].0 / sizes[at - 1].0;
+    let at = (1..sizes.len()).max_by(|a, b| gap(a).total_cmp(&gap(b)))?;
+    let (small, large) = sizes.split_at(at);
+    let [usual_small, usual_large] = [small, large].map(|of| upper_median(of.iter().map(|(size, _)| *size).collect()));
+    let factor = usual_large? / usual_small?;
+    if gap(&at) < GAP || factor < APART {
+        return None;
+    }
+    let ((odd, how), others) =
+        if large.len() <= small.len() { ((large, "larger"), small) } else { ((small, "smaller"), large) };
+    let is_odd = |episode: &&Episode| odd.iter().any(|(_, of)| std::ptr::eq(*of, *episode));
+    // Of an episode that was split, pieces have its name.
+    let mut odd: Vec<&str> =
+        episodes.iter().filter(is_odd).map(|of| of.name.split(PIECE).next().unwrap_or("")).collect();
+    odd.dedup();
+    let mut names: Vec<&str> = odd.iter().take(NAMED).copied().collect();
+    let held = names.join(",");
+    let more = format!("and {} more", odd.len().saturating_sub(NAMED));
+    if odd.len() > NAMED {
+        names.push(&more);
+    }
+    let apart = |of: f64| (factor / of).max(of / factor);
+    let nearest = FACTORS.iter().min_by(|(a, _), (b, _)| apart(*a).total_cmp(&apart(*b)));
+    let nearest = nearest.filter(|(of, _)| apart(*of) < NEAR);
+    let unit = nearest.map_or("another unit would explain it", |(_, unit)| unit);
+    let (count, rest) = (counted(odd.len(), "episode"), others.len());
+    let are = if odd.len() == 1 { "is" } else { "are" };
+    Some(Finding {
+        verdict: Verdict::Doubtful,
+        what: format!(
+            "{count} ({}) {are} about {factor:.0} times {how} than the {rest} others ({unit})",
+            names.join(", ")
+        ),
+        next: if odd.len() > NAMED {
+            "convert them in their file".to_owned()
+        } else {
+            format!("convert them in their file, or learn without them: --hold-out {held}")
+        },
+    })
+}
+
+/// How far the positions of an episode spread in the units of the recording, root mean square.
+fn size(episode: &Episode, scales: &DVector<f64>) -> f64 {
+    let spread = |(row, scale): (usize, &f64)| standard_deviation(episode.positions.row(row).iter().copied()) / scale;
+    scales.iter().enumerate().map(|of| spread(of).powi(2)).sum::<f64>().sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use motion::{Source, Times};
+    use nalgebra::DMatrix;
+    use proptest::prelude::*;
+
+    use super::*;
+
+    /// Movements towards the origin from starts at any distance from 0.2 to 2, times a factor each.
+    fn episodes(factors: &[f64], seed: f64) -> Vec<Episode> {
+        let one = |(k, factor): (usize, &f64)| {
+            let far = 1.1 + 0.9 * (seed + 1.9 * k as f64).sin();
+            let place =
+                |axis: usize, i: usize| factor * far * (k as f64 + 1.6 * axis as f64).cos() * (-0.05 * i as f64).exp();
+            Episode {
+                name: format!("take {k}"),
+                source: Source::default(),
+                times: Times::Even { step: 0.05, len: 40 },
+                positions: DMatrix::from_fn(2, 40, place),
+                velocities: None,
+                constraint: None,
+                context: DVector::zeros(0),
+            }
+        };
+        factors.iter().enumerate().map(one).collect()
+    }
+
+    fn found(factors: &[f64], seed: f64) -> Option<Finding> {
+        other_units(&episodes(factors, seed), &DVector::repeat(2, 1.0))
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(48))]
+
+        /// Movements of all sizes pass; a few in millimetres are named, whichever they are.
+        #[test]
+        fn episodes_in_another_unit_are_named(
+            seed in 0.0..6.0f64,
+            odd in proptest::sample::subsequence((0..20usize).collect::<Vec<_>>(), 1..6),
+            factor in prop_oneof![Just(1000.0), Just(1e-3), Just(100.0), Just(57.2958)],
+        ) {
+            prop_assert_eq!(found(&[1.0; 20], seed), None);
+            let factors: Vec<f64> = (0..20).map(|k| if odd.contains(&k) { factor } else { 1.0 }).collect();
+            let found = found(&factors, seed);
+            // Small movements in large units may look like large ones in small units.
+            if let Some(Finding { what, next, .. }) = found {
+                let names: Vec<String> = odd.iter().map(|k| format!("take {k}")).collect();
+                let listed = format!("({})", names.join(", "));
+                let ends = format!("--hold-out {}", names.join(","));
+                prop_assert!(what.contains(&listed) && next.ends_with(&ends), "{what}: {next}");
+                prop_assert!(what.contains(if factor > 1.0 { "larger" } else { "smaller" }), "{what}");
+            } else {
+                prop_assert!(factor == 57.2958 || factor == 100.0, "{factor} {odd:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_unit_is_guessed_and_many_episodes_are_counted() {
+        let factors: Vec<f64> = (0..20).map(|k| if k % 3 == 0 { 1000.0 } else { 1.0 }).collect();
+        let found = found(&factors, 1.0).expect("a finding");
+        assert!(found.what.starts_with("7 episodes (take 0, take 3, take 6, take 9, take 12, and 2 more) are about "));
+        assert!(found.what.ends_with("than the 13 others (millimetres among metres?)"), "{}", found.what);
+        assert_eq!(found.next, "convert them in their file");
+    }
+}
