@@ -8,7 +8,7 @@ use rand_chacha::ChaCha8Rng;
 
 /// A model's size and parameters, and data to train it with.
 #[derive(Debug, Clone)]
-pub struct Case {
+pub(crate) struct Case {
     pub n_in: usize,
     pub n_out: usize,
     pub params: LwprParams,
@@ -18,11 +18,11 @@ pub struct Case {
 }
 
 impl Case {
-    pub fn model(&self) -> Lwpr {
+    pub(crate) fn model(&self) -> Lwpr {
         self.params.clone().build(self.n_in, self.n_out).unwrap()
     }
 
-    pub fn trained(&self, passes: usize) -> Lwpr {
+    pub(crate) fn trained(&self, passes: usize) -> Lwpr {
         let mut model = self.model();
         model.fit_in_order(self.xs.as_view(), self.ys.as_view(), passes).unwrap();
         model
@@ -70,7 +70,7 @@ fn metric_matrix(metric: Metric, n: usize, width: f64, rng: &mut ChaCha8Rng) -> 
 }
 
 /// Every parameter is drawn. The targets are smooth functions with noise.
-pub fn case(samples: usize) -> impl Strategy<Value = Case> {
+pub(crate) fn case(samples: usize) -> impl Strategy<Value = Case> {
     let sizes = (n_in(), 1_usize..=3, any::<u64>());
     let speeds = (1.0..200.0, 1e-8..1e-3, 0.002..0.4, 0.2..0.99, 0.98..0.9995, 0.9..0.9999);
     (sizes, shape(), speeds, rest(), 0.5..4.0, 0.3..3.0).prop_map(

@@ -26,11 +26,10 @@ use motion::{LearntPolicy, Policy};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
-use crate::along::along_movements;
 use crate::channel_joints::joints_in_degrees;
 use crate::trust::{
-    AlignedNumbers, CommonPlane, TrustNumbers, VerdictInput, common_surface, differing_goals, friction, judge, pushed,
-    share_leaving, share_unknown, slow_starts, unexplained,
+    AlignedNumbers, CommonPlane, TrustNumbers, VerdictInput, along_the_motion, common_surface, judge, pushed,
+    share_leaving, share_unknown,
 };
 use crate::{DataSummary, Decision, Finding, FitError, Learnt, MadeBy, Model, PredictedSpeed, Prepared};
 use aligning::AlignedFit;
@@ -122,18 +121,8 @@ pub fn fit_with(
         let learnt = options.learner != LearnerChoice::PolicyAlign && takes_slope(&readings, options.learner);
         pushed(push, learnt, prepared, &mut findings);
     }
-    // All compare velocities with the policy's part along them, which another metric turns.
-    if rows.momenta().is_none() {
-        let movements = along_movements(policy, &rows);
-        findings.extend(differing_goals(&movements, prepared, &numbers));
-        findings.extend(friction(&movements, rows.len()));
-        findings.extend(slow_starts(&movements, &rows));
-        let pushed = takes_slope(&readings, options.learner) && readings.slope().report().push.is_some();
-        if rows.variances().is_none() && !pushed {
-            let predicted = numbers.held_out_error <= TrustNumbers::GOOD_HELD_OUT_ERROR;
-            findings.extend(unexplained(&movements, predicted));
-        }
-    }
+    let pushed = takes_slope(&readings, options.learner) && readings.slope().report().push.is_some();
+    findings.extend(along_the_motion(policy, &rows, prepared, &numbers, pushed));
     findings.extend(robot.and_then(|robot| joints_in_degrees(&robot, &prepared.state)));
     findings.extend(plane(prepared, &numbers));
     findings.extend(common_surface(&rows, &prepared.state, &numbers));

@@ -176,11 +176,13 @@ fn timed(dim: usize, swings: bool, seed: u64) -> Case {
     taught(dim, seed, |_, rng| {
         let normals = normals(dim, rng);
         let duration = SAMPLES as f64 * STEP;
-        let policy = move |t: f64, x: &Vector| match swings {
-            true => {
-                bowl(&(x - DVector::from_fn(dim, |axis, _| if axis == 0 { (3.0 * t / duration).sin() } else { 0.0 })))
+        let policy = move |t: f64, x: &Vector| {
+            if swings {
+                let goal = DVector::from_fn(dim, |axis, _| if axis == 0 { (3.0 * t / duration).sin() } else { 0.0 });
+                bowl(&(x - goal))
+            } else {
+                bowl(x) * (-1.5 * t / duration).exp()
             }
-            false => bowl(x) * (-1.5 * t / duration).exp(),
         };
         (Box::new(policy), Box::new(move |t, x| pressed(&normals(t), 0.0, &policy(t, x))))
     })
