@@ -83,6 +83,9 @@ pub(crate) fn execute() -> anyhow::Result<()> {
     for folder in ["crates", "xtask", "benches"] {
         source_faults(&root.join(folder), &equations, &mut faults)?;
     }
+    for folder in &folders {
+        faults.extend(forgotten_tests(folder)?);
+    }
     let (mut users, mut paper) = (0, 0);
     for folder in folders.iter().filter(|folder| !folder.ends_with("benches")) {
         let sources = sources(&folder.join("src"))?;
@@ -186,6 +189,23 @@ fn dependency_faults(manifest: &Manifest, allowed: &BTreeMap<String, Allowed>) -
     named.iter().copied().filter_map(fault).chain(unused).chain(twice).collect()
 }
 
+/// Where the tests of a crate are one program, files of tests that neither this nor the manifest names would never run.
+fn forgotten_tests(folder: &Path) -> anyhow::Result<Vec<String>> {
+    let program = folder.join("tests/all.rs");
+    if !program.exists() {
+        return Ok(Vec::new());
+    }
+    let (named, manifest) = (read(&program)?, read(&folder.join("Cargo.toml"))?);
+    let files =
+        entries(&folder.join("tests"))?.into_iter().filter(|path| path.extension().is_some_and(|of| of == "rs"));
+    let is_forgotten = |path: &PathBuf| {
+        let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+        !named.contains(&format!("mod {stem};")) && !manifest.contains(&format!("[[test]]\nname = \"{stem}\""))
+    };
+    let fault = |path: PathBuf| format!("{}: never run; name it in tests/all.rs", path.display());
+    Ok(files.filter(is_forgotten).map(fault).collect())
+}
+
 fn source_faults(folder: &Path, equations: &BTreeSet<&str>, faults: &mut Vec<String>) -> anyhow::Result<()> {
     let paths = entries(folder)?;
     let files = paths.iter().filter(|path| path.extension().is_some_and(|extension| extension == "rs")).count();
@@ -256,6 +276,20 @@ mod tests {
     #[test]
     fn this_workspace_is_tidy() {
         execute().unwrap();
+    }
+
+    #[test]
+    fn a_test_that_no_program_names_is_found() {
+        let folder = tempfile::tempdir().unwrap();
+        let write = |name: &str, text: &str| fs::write(folder.path().join(name), text).unwrap();
+        fs::create_dir(folder.path().join("tests")).unwrap();
+        write("Cargo.toml", "[[test]]\nname = \"all\"\n\n[[test]]\nname = \"alone\"\n");
+        ["all", "alone", "named", "forgotten"].map(|name| write(&format!("tests/{name}.rs"), "mod named;\n"));
+        let faults = forgotten_tests(folder.path()).unwrap();
+        assert_eq!(
+            faults,
+            [format!("{}: never run; name it in tests/all.rs", folder.path().join("tests/forgotten.rs").display())]
+        );
     }
 
     #[test]
