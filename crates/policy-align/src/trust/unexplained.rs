@@ -50,7 +50,7 @@ pub(crate) fn unexplained(movements: &[Vec<Along>], predicted: bool) -> Option<F
     let (cause, bound) = match &timed {
         Some(Regression { coefficient, .. }) if *coefficient < 0.0 => ("speed falls with time", SOME),
         Some(_) => ("speed grows with time", SOME),
-        None if predicted => ("but time, a moving target, a delay, a load or the operator", MUCH),
+        None if predicted => ("time, a moving target, a delay, a load or the operator may", MUCH),
         None => return None,
     };
     (persistence > PERSISTENT && share > bound).then(|| Finding {
