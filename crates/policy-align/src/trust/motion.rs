@@ -31,7 +31,7 @@ pub(crate) fn along_the_motion(
     // Noise and constraints that push are not the policy's either.
     if rows.variances().is_none() && !pushed {
         let predicted = numbers.held_out_error <= TrustNumbers::GOOD_HELD_OUT_ERROR;
-        findings.extend(unexplained(&movements, predicted));
+        findings.extend(unexplained(movements, predicted));
     }
     findings
 }

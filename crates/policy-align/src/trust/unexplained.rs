@@ -16,7 +16,10 @@ const LEAST_T: f64 = 4.0;
 /// Correlation of neighbouring samples above which it is no noise.
 const PERSISTENT: f64 = 0.8;
 
-/// What a policy leaves of velocities: r − nᵀπ̂.
+/// Share of the root mean square of the speeds below which rounding and rest decide the direction n, and with it r − nᵀπ̂.
+const SLOW: f64 = 0.2;
+
+/// What a policy leaves of velocities that are not slow: r − nᵀπ̂.
 struct Unexplained {
     /// Its share of the squares.
     share: f64,
@@ -27,24 +30,28 @@ struct Unexplained {
 }
 
 impl Unexplained {
-    fn of(movements: &[Vec<Along>]) -> Self {
+    fn of(movements: Vec<Vec<Along>>) -> Self {
+        let speeds = || movements.iter().flatten().map(|sample| sample.speed * sample.speed);
+        let slow = SLOW * (speeds().sum::<f64>() / speeds().count() as f64).sqrt();
+        let fast = |samples: Vec<Along>| samples.into_iter().filter(|sample| sample.speed > slow).collect();
+        let movements: Vec<Vec<Along>> = movements.into_iter().map(fast).collect();
         let error = |sample: &Along| sample.speed - sample.wanted;
         let over = |of: &dyn Fn(&Along) -> f64| movements.iter().flatten().map(of).sum::<f64>();
         let squares = over(&|sample| error(sample).powi(2));
-        let products = movements.iter().flat_map(|samples| samples.windows(2));
-        let products = products.filter(|pair| pair[0].sample + 1 == pair[1].sample);
-        let together: f64 = products.map(|pair| error(&pair[0]) * error(&pair[1])).sum();
+        let pairs = movements.iter().flat_map(|samples| samples.windows(2));
+        let pairs = pairs.filter(|pair| pair[0].sample + 1 == pair[1].sample);
+        let products: f64 = pairs.map(|pair| error(&pair[0]) * error(&pair[1])).sum();
         Unexplained {
             share: squares / over(&|sample| sample.speed.powi(2)),
-            persistence: together / squares,
-            timed: Regression::of(movements, |sample| sample.wanted * Vector2::new(sample.sample as f64, 1.0)),
+            persistence: products / squares,
+            timed: Regression::of(&movements, |sample| sample.wanted * Vector2::new(sample.sample as f64, 1.0)),
         }
     }
 }
 
-/// Says that velocities that were recorded without noise depend on something else than the state. Where left-out movements are not
+/// Says that velocities without noise depend on something else than the state. Where left-out movements are not
 /// `predicted` either, it only adds that time is the cause.
-pub(crate) fn unexplained(movements: &[Vec<Along>], predicted: bool) -> Option<Finding> {
+pub(crate) fn unexplained(movements: Vec<Vec<Along>>, predicted: bool) -> Option<Finding> {
     let Unexplained { share, persistence, timed } = Unexplained::of(movements);
     let timed = timed.filter(|timed| timed.share > TIMED && timed.t.abs() > LEAST_T);
     let (cause, bound) = match &timed {
@@ -91,16 +98,19 @@ mod tests {
         #[test]
         fn what_the_state_does_not_explain(seed in 0..1000u32, by in 0.3..0.9f64, growing: bool, little in 0.001..0.1f64) {
             let sign = if growing { 1.0 } else { -1.0 };
-            let found = unexplained(&movements(seed, |_, time| 1.0 + sign * by * (time - 0.4)), growing).unwrap();
+            let found = unexplained(movements(seed, |_, time| 1.0 + sign * by * (time - 0.4)), growing).unwrap();
             let word = if growing { "grows" } else { "falls" };
             prop_assert!(found.what.contains(word), "{}", found.what);
             let operators = |by: f64| movements(seed, move |at, _| 1.0 + by * if at % 2 == 0 { 1.0 } else { -1.0 });
-            let found = unexplained(&operators(by), true).unwrap();
+            let found = unexplained(operators(by), true).unwrap();
             prop_assert!(found.what.contains("operator"), "{}", found.what);
-            prop_assert!(unexplained(&operators(by), false).is_none());
-            prop_assert!(unexplained(&operators(little), true).is_none());
+            prop_assert!(unexplained(operators(by), false).is_none());
+            prop_assert!(unexplained(operators(little), true).is_none());
+            let resting = |time: f64| if time < 0.7 { 1.0 } else { 0.0 };
+            let held = movements(seed, move |_, time| resting(time) + 0.1 * little);
+            prop_assert!(unexplained(held, true).is_none(), "samples at rest");
             let noise = movements(seed, |at, time| 1.0 + by * (7919.0 * (at as f64 + 1.7 * time)).sin());
-            prop_assert!(unexplained(&noise, true).is_none());
+            prop_assert!(unexplained(noise, true).is_none());
         }
     }
 }
