@@ -284,7 +284,9 @@ mod tests {
         let write = |name: &str, text: &str| fs::write(folder.path().join(name), text).unwrap();
         fs::create_dir(folder.path().join("tests")).unwrap();
         write("Cargo.toml", "[[test]]\nname = \"all\"\n\n[[test]]\nname = \"alone\"\n");
-        ["all", "alone", "named", "forgotten"].map(|name| write(&format!("tests/{name}.rs"), "mod named;\n"));
+        for name in ["all", "alone", "named", "forgotten"] {
+            write(&format!("tests/{name}.rs"), "mod named;\n");
+        }
         let faults = forgotten_tests(folder.path()).unwrap();
         assert_eq!(
             faults,
