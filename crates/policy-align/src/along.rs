@@ -27,7 +27,9 @@ pub(crate) fn along_movements(policy: &dyn Policy, rows: &Rows) -> Vec<Vec<Along
 }
 
 /// Fewer movements determine no t.
-const FEW: usize = 5;
+pub(crate) const FEW: usize = 5;
+/// A t over movements above which an effect is real.
+pub(crate) const LEAST_T: f64 = 4.0;
 
 /// The first coefficient of a regression of r − nᵀπ̂ on two factors.
 pub(crate) struct Regression {

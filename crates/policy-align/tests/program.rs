@@ -74,15 +74,20 @@ fn the_help_lists_the_exit_codes() {
     }
 }
 
-/// One constraint for all movements: what matters is said, however long it is.
-#[test]
-fn a_doubtful_verdict_shows_every_finding_that_casts_doubt() {
+/// Writes ten movements along x under one constraint common to all.
+fn write_under_one_constraint(file: &str) {
     let sample = |episode: i32, i: i32| {
         let (k, left) = (f64::from(episode), (-0.1 * f64::from(i)).exp());
         format!("{episode},{:.2},{:.6},{:.6}\n", 0.1 * f64::from(i), (1.0 + 0.3 * k) * left, 0.2 * k)
     };
     let rows: String = (0..10).flat_map(|episode| (0..20).map(move |i| sample(episode, i))).collect();
-    std::fs::write(folder().join("same.csv"), format!("episode,t,x,y\n{rows}")).unwrap();
+    std::fs::write(folder().join(file), format!("episode,t,x,y\n{rows}")).unwrap();
+}
+
+/// One constraint for all movements: what matters is said, however long it is.
+#[test]
+fn a_doubtful_verdict_shows_every_finding_that_casts_doubt() {
+    write_under_one_constraint("same.csv");
     let ran = run("fit same.csv -o same.json");
     let document: Value = serde_json::from_str(&run("info same.json --json").out).unwrap();
     let findings = document["trust"]["findings"].as_array().unwrap();
@@ -610,12 +615,7 @@ fn a_movement_that_is_not_aligned_is_left_out_by_name() {
 /// Of two readings the user may choose one, which is then no doubt; where another learner is asked for, that is said.
 #[test]
 fn the_choice_between_two_readings_is_offered_where_it_is_heeded() {
-    let sample = |episode: i32, i: i32| {
-        let (k, left) = (f64::from(episode), (-0.1 * f64::from(i)).exp());
-        format!("{episode},{:.2},{:.6},{:.6}\n", 0.1 * f64::from(i), (1.0 + 0.3 * k) * left, 0.2 * k)
-    };
-    let rows: String = (0..10).flat_map(|episode| (0..20).map(move |i| sample(episode, i))).collect();
-    std::fs::write(folder().join("readings.csv"), format!("episode,t,x,y\n{rows}")).unwrap();
+    write_under_one_constraint("readings.csv");
     for (flags, verdict, next) in [
         ("", "doubtful", "set --reading free or --reading constrained"),
         ("--reading free", "good", "the policy is right if nothing was constrained, as given"),

@@ -23,6 +23,9 @@ impl Notes {
     }
 }
 
+/// What follows the name of an episode in those of the pieces that it was cut into, before their first sample.
+pub(crate) const PIECE: &str = " from sample ";
+
 /// "", or " (and 3 more)" of four.
 pub(crate) fn and_more(count: usize) -> String {
     if count > 1 { format!(" (and {} more)", count - 1) } else { String::new() }

@@ -121,8 +121,8 @@ pub fn fit_with(
         let learnt = options.learner != LearnerChoice::PolicyAlign && takes_slope(&readings, options.learner);
         pushed(push, learnt, prepared, &mut findings);
     }
-    let pushed = takes_slope(&readings, options.learner) && readings.slope().report().push.is_some();
-    findings.extend(along_the_motion(policy, &rows, prepared, &numbers, pushed));
+    let from_pushes = takes_slope(&readings, options.learner) && readings.slope().report().push.is_some();
+    findings.extend(along_the_motion(policy, &rows, prepared, &numbers, from_pushes));
     findings.extend(robot.and_then(|robot| joints_in_degrees(&robot, &prepared.state)));
     findings.extend(plane(prepared, &numbers));
     findings.extend(common_surface(&rows, &prepared.state, &numbers));

@@ -3,13 +3,12 @@
 use nalgebra::Vector2;
 use prepare::numbers::percent;
 
-use crate::along::{Along, Regression};
+use crate::along::{Along, LEAST_T, Regression};
 use crate::{Finding, Verdict};
 
-/// Least missing speed, as a share of the root mean square, and its t over movements: friction has a t of 5 and more, all else below 3.5. The policy
+/// Least missing speed, as a share of the root mean square; its t over movements is 5 and more with friction, below 3.5 with all else. The policy
 /// absorbs some of it, so that the share is too low.
 const MISSING: f64 = 0.01;
-const LEAST_T: f64 = 4.0;
 
 /// Says that what constraints turn aside is slower than r = nᵀπ, by about the same everywhere; of `rows` rows, those that move by movement.
 pub(crate) fn friction(movements: &[Vec<Along>], rows: usize) -> Option<Finding> {

@@ -37,21 +37,24 @@ pub(crate) fn judge(evidence: VerdictInput<'_>) -> Trust {
     let VerdictInput { numbers, findings, state, episodes, learner, given } = evidence;
     let mut findings = findings.to_vec();
     let mut found = |verdict, what: String, next: &str| findings.push(Finding { verdict, what, next: next.to_owned() });
-    if numbers.reading == Hypothesis::Ambiguous {
-        about_two_readings(&numbers, (learner, given), &mut found);
-    }
-    about_reading(&numbers, state, &mut found);
+    about_reading(&numbers, state, (learner, given), &mut found);
     about_episodes(&numbers, episodes, &mut found);
     about_error(&numbers, &mut found);
     findings.sort_by_key(|finding| Reverse(finding.verdict));
     Trust { verdict: Trust::verdict_of(&findings), findings, numbers }
 }
 
-fn about_reading(numbers: &TrustNumbers, state: &[StateChannel], found: &mut dyn FnMut(Verdict, String, &str)) {
+fn about_reading(
+    numbers: &TrustNumbers,
+    state: &[StateChannel],
+    given: (LearnerChoice, Option<Hypothesis>),
+    found: &mut dyn FnMut(Verdict, String, &str),
+) {
     let direction = direction_by_channels(&numbers.unseen_direction, state);
     let coverage = short(numbers.direction_coverage);
     match numbers.reading {
-        Hypothesis::Constrained | Hypothesis::Ambiguous => {}
+        Hypothesis::Constrained => {}
+        Hypothesis::Ambiguous => about_two_readings(numbers, given, found),
         Hypothesis::Free if numbers.direction_coverage < SPREAD => found(
             Verdict::Doubtful,
             format!("no constraint was detected, but movements hardly vary along {direction} (coverage {coverage})"),
@@ -87,14 +90,14 @@ fn about_reading(numbers: &TrustNumbers, state: &[StateChannel], found: &mut dyn
 /// Nothing was constrained, or one constraint always acted: who knows which may say so, where the learner heeds it.
 fn about_two_readings(
     numbers: &TrustNumbers,
-    (learner, given): (LearnerChoice, Option<Hypothesis>),
+    given: (LearnerChoice, Option<Hypothesis>),
     found: &mut dyn FnMut(Verdict, String, &str),
 ) {
     let what = format!(
         "two readings explain these movements equally well, no constraint or one common to all: their policies differ by {}",
         percent(numbers.gap)
     );
-    match (learner, given) {
+    match given {
         (LearnerChoice::Auto, Some(Hypothesis::Free)) => {
             found(Verdict::Good, what, "the policy is right if nothing was constrained, as given (--reading)");
         }

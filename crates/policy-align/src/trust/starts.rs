@@ -4,18 +4,15 @@ use gp::Rows;
 use motion::mean_and_error;
 use prepare::numbers::percent_of_all;
 
-use crate::along::Along;
+use crate::along::{Along, FEW, LEAST_T};
 use crate::{Finding, Verdict};
 
 /// One in so many samples of a movement is its beginning.
 const BEGINNING: usize = 10;
-/// Least share of the speed that beginnings lack, beyond what the rest lacks, and its t over movements.
+/// Least share of the speed that beginnings lack, beyond what the rest lacks.
 const MISSING: f64 = 0.1;
-const LEAST_T: f64 = 4.0;
 /// Share from which the policy is doubtful: with less its error was below a tenth.
 const MUCH: f64 = 0.4;
-/// Fewer movements determine no t.
-const FEW: usize = 5;
 
 /// Σ (nᵀπ̂ − r) nᵀπ̂ and Σ (nᵀπ̂)² of samples.
 #[derive(Debug, Clone, Copy, Default)]

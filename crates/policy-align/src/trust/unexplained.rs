@@ -3,19 +3,17 @@
 use nalgebra::Vector2;
 use prepare::numbers::percent_of_all;
 
-use crate::along::{Along, Regression};
+use crate::along::{Along, LEAST_T, Regression};
 use crate::{Finding, Verdict};
 
 /// Share of the squared velocities that is doubtful.
 const MUCH: f64 = 0.05;
 /// The same where it changes with time: the policy has absorbed most of it.
 const SOME: f64 = 0.005;
-/// Share of it that a speed explains that grows or falls with time, and its t over movements.
+/// Share of it that a speed explains that grows or falls with time.
 const TIMED: f64 = 0.25;
-const LEAST_T: f64 = 4.0;
 /// Correlation of neighbouring samples above which it is no noise.
 const PERSISTENT: f64 = 0.8;
-
 /// Share of the root mean square of the speeds below which rounding and rest decide the direction n, and with it r − nᵀπ̂.
 const SLOW: f64 = 0.2;
 
@@ -31,8 +29,8 @@ struct Unexplained {
 
 impl Unexplained {
     fn of(movements: Vec<Vec<Along>>) -> Self {
-        let speeds = || movements.iter().flatten().map(|sample| sample.speed * sample.speed);
-        let slow = SLOW * (speeds().sum::<f64>() / speeds().count() as f64).sqrt();
+        let powers: Vec<f64> = movements.iter().flatten().map(|sample| sample.speed * sample.speed).collect();
+        let slow = SLOW * (powers.iter().sum::<f64>() / powers.len() as f64).sqrt();
         let fast = |samples: Vec<Along>| samples.into_iter().filter(|sample| sample.speed > slow).collect();
         let movements: Vec<Vec<Along>> = movements.into_iter().map(fast).collect();
         let error = |sample: &Along| sample.speed - sample.wanted;

@@ -3,6 +3,7 @@
 use motion::{Episode, Finding, Verdict, standard_deviation, upper_median};
 use nalgebra::DVector;
 
+use crate::notes::PIECE;
 use crate::numbers::counted;
 
 /// Sizes of movements in one unit leave no gap as large as this factor …
@@ -17,8 +18,6 @@ const FEWEST_SMALLER: usize = 3;
 const NAMED: usize = 5;
 /// A factor between units explains one that is this factor from it at most: movements differ in size.
 const NEAR: f64 = 3.0;
-/// What follows the name of an episode in that of its pieces.
-const PIECE: &str = " from sample ";
 /// Factors between units.
 const FACTORS: [(f64, &str); 3] =
     [(1000.0, "millimetres among metres?"), (100.0, "centimetres among metres?"), (57.3, "degrees among radians?")];
@@ -28,29 +27,29 @@ const FACTORS: [(f64, &str); 3] =
 ///
 /// `scales`: the factor on each channel, (n).
 pub(crate) fn other_units(episodes: &[Episode], scales: &DVector<f64>) -> Option<Finding> {
-    let mut sizes: Vec<(f64, &Episode)> = episodes.iter().map(|episode| (size(episode, scales), episode)).collect();
-    sizes.retain(|(size, _)| *size > 0.0);
-    sizes.sort_by(|(a, _), (b, _)| a.total_cmp(b));
+    let each: Vec<f64> = episodes.iter().map(|episode| size(episode, scales)).collect();
+    let mut sizes: Vec<f64> = each.iter().copied().filter(|&size| size > 0.0).collect();
+    sizes.sort_by(f64::total_cmp);
     if sizes.len() < FEWEST {
         return None;
     }
-    let gap = |at: &usize| sizes[*at].0 / sizes[at - 1].0;
+    let gap = |at: &usize| sizes[*at] / sizes[at - 1];
     let at = (1..sizes.len()).max_by(|a, b| gap(a).total_cmp(&gap(b)))?;
     let (small, large) = sizes.split_at(at);
-    let [usual_small, usual_large] = [small, large].map(|of| upper_median(of.iter().map(|(size, _)| *size).collect()));
+    let [usual_small, usual_large] = [small, large].map(|of| upper_median(of.to_vec()));
     let factor = usual_large? / usual_small?;
     if gap(&at) < GAP || factor < APART {
         return None;
     }
-    let ((odd, how), others) =
-        if large.len() <= small.len() { ((large, "larger"), small) } else { ((small, "smaller"), large) };
-    if how == "smaller" && odd.len() < FEWEST_SMALLER {
+    let larger = large.len() <= small.len();
+    let (how, others) = if larger { ("larger", small) } else { ("smaller", large) };
+    if !larger && small.len() < FEWEST_SMALLER {
         return None;
     }
-    let is_odd = |episode: &&Episode| odd.iter().any(|(_, of)| std::ptr::eq(*of, *episode));
+    let is_odd = |&(_, &size): &(&Episode, &f64)| size > 0.0 && (size >= large[0]) == larger;
     // Of an episode that was split, pieces have its name.
-    let mut odd: Vec<&str> =
-        episodes.iter().filter(is_odd).map(|of| of.name.split(PIECE).next().unwrap_or("")).collect();
+    let odd = episodes.iter().zip(&each).filter(is_odd);
+    let mut odd: Vec<&str> = odd.map(|(of, _)| of.name.split(PIECE).next().unwrap_or("")).collect();
     odd.dedup();
     let mut names: Vec<&str> = odd.iter().take(NAMED).copied().collect();
     let held = names.join(",");

@@ -1,7 +1,7 @@
 use motion::anomalies::{LongStep, long_steps};
 use motion::{Channel, Episode, Verdict};
 
-use crate::notes::Notes;
+use crate::notes::{Notes, PIECE};
 use crate::numbers::short;
 use crate::remarks::is_switch;
 
@@ -60,7 +60,7 @@ fn pieces(episode: &Episode, jumps: &[LongStep], notes: &mut Notes) -> Vec<Episo
     for to in jumps.iter().map(|jump| jump.sample + 1).chain([episode.n_samples()]) {
         let mut piece = episode.part(from, to);
         if from > 0 {
-            piece.name = format!("{} from sample {from}", episode.name);
+            piece.name = format!("{}{PIECE}{from}", episode.name);
         }
         if to - from >= LEAST {
             pieces.push(piece);

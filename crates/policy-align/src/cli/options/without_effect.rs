@@ -23,7 +23,7 @@ pub(crate) fn of_learner(flags: &FitFlags, learner: LearnerChoice) -> Result<(),
         flags.iter().any(|(given, value)| given == key && value != "auto") && !learners.contains(&learner)
     });
     let Some((key, learners)) = unused else { return Ok(()) };
-    let (flag, own) = (format!("--{}", key.replace('_', "-")), word(learner));
+    let (flag, own) = (flag(key), word(learner));
     let others: Vec<String> = learners.iter().map(|other| format!("--learner {}", word(*other))).collect();
     let remedy = format!("no {flag}, or {}", others.join(" or "));
     Err(Failure::usage(format!("{flag} has no effect with --learner {own}"), flag, remedy))
@@ -33,12 +33,9 @@ pub(crate) fn of_learner(flags: &FitFlags, learner: LearnerChoice) -> Result<(),
 pub(crate) fn of_reading(flags: &ReadFlags) -> Result<(), Failure> {
     match keys(flags).iter().find(|(key, _)| key != "context") {
         Some((key, _)) => {
-            let flag = format!("--{}", key.replace('_', "-"));
-            Err(Failure::usage(
-                "no recordings are read",
-                flag.clone(),
-                format!("--files with recordings, or no {flag}"),
-            ))
+            let flag = flag(key);
+            let remedy = format!("--files with recordings, or no {flag}");
+            Err(Failure::usage("no recordings are read", flag, remedy))
         }
         None => Ok(()),
     }
@@ -46,7 +43,12 @@ pub(crate) fn of_reading(flags: &ReadFlags) -> Result<(), Failure> {
 
 /// The first of these flags that is given.
 pub(crate) fn of_roll_outs(flags: &RollOutFlags) -> Option<String> {
-    keys(flags).first().map(|(key, _)| format!("--{}", key.replace('_', "-")))
+    keys(flags).first().map(|(key, _)| flag(key))
+}
+
+/// The flag of a key.
+fn flag(key: &str) -> String {
+    format!("--{}", key.replace('_', "-"))
 }
 
 /// Keys and values of what is given; what no table can hold is refused elsewhere.

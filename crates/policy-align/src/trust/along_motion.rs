@@ -12,13 +12,13 @@ use super::unexplained::unexplained;
 use crate::Finding;
 use crate::along::along_movements;
 
-/// Findings on velocities beside a policy's part along them. There are none with a robot's inertia, which turns that part.
+/// Findings on velocities beside a policy's part along them, which was learnt `from_pushes` or not. There are none with a robot's inertia, which turns that part.
 pub(crate) fn along_the_motion(
     policy: &dyn Policy,
     rows: &Rows,
     prepared: &Prepared,
     numbers: &TrustNumbers,
-    pushed: bool,
+    from_pushes: bool,
 ) -> Vec<Finding> {
     if rows.momenta().is_some() {
         return Vec::new();
@@ -28,8 +28,8 @@ pub(crate) fn along_the_motion(
     findings.extend(differing_goals(&movements, prepared, numbers));
     findings.extend(friction(&movements, rows.len()));
     findings.extend(slow_starts(&movements, rows));
-    // Noise and constraints that push are not the policy's either.
-    if rows.variances().is_none() && !pushed {
+    // Noise and pushes are not of the policy either.
+    if rows.variances().is_none() && !from_pushes {
         let predicted = numbers.held_out_error <= TrustNumbers::GOOD_HELD_OUT_ERROR;
         findings.extend(unexplained(movements, predicted));
     }
