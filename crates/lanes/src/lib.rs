@@ -28,7 +28,7 @@ pub use exponential::{exp, exp_in_bulk};
 pub use group::{LANES, Lanes, groups_of, total};
 pub use number::Number;
 pub use register::Register;
-pub use sin_cos::sin_cos_all;
+pub use sin_cos::{sin_cos_all, sin_cos_all_dispatched};
 
 /// The program of the README, compiled.
 #[cfg(doctest)]

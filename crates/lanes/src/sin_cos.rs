@@ -5,6 +5,8 @@
 //! fused multiply-add, so that every machine gets the same bits. Beyond [`FAR`] the parts of π/2 no longer multiply
 //! exactly and the function of the platform takes over, whose bits may differ.
 
+use pulp::{Simd, WithSimd};
+
 use crate::Lanes;
 
 /// Largest angle that the polynomials serve, in radians.
@@ -50,6 +52,27 @@ pub fn sin_cos_all(angles: &[Lanes], sines: &mut [Lanes], cosines: &mut [Lanes])
     let far = angles.as_flattened().iter().fold(false, |far, angle| far | (angle.abs() > FAR));
     if far {
         far_ones(angles.as_flattened(), sines.as_flattened_mut(), cosines.as_flattened_mut());
+    }
+}
+
+/// [`sin_cos_all`] in the widest registers of the processor at hand, for a caller that is compiled for narrower ones.
+#[inline]
+pub fn sin_cos_all_dispatched(angles: &[Lanes], sines: &mut [Lanes], cosines: &mut [Lanes]) {
+    pulp::Arch::new().dispatch(SinCosAll { angles, sines, cosines });
+}
+
+struct SinCosAll<'a> {
+    angles: &'a [Lanes],
+    sines: &'a mut [Lanes],
+    cosines: &'a mut [Lanes],
+}
+
+impl WithSimd for SinCosAll<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        sin_cos_all(self.angles, self.sines, self.cosines);
     }
 }
 
@@ -129,26 +152,14 @@ mod tests {
         line(a).abs_diff(line(b))
     }
 
-    struct SinCos<'a> {
-        angles: &'a [Lanes],
-        sines: &'a mut [Lanes],
-        cosines: &'a mut [Lanes],
-    }
-
-    impl pulp::WithSimd for SinCos<'_> {
-        type Output = ();
-
-        #[inline(always)]
-        fn with_simd<S: pulp::Simd>(self, _: S) {
-            sin_cos_all(self.angles, self.sines, self.cosines);
-        }
-    }
-
     /// Every lane in turn gets the angle; the others get neighbours.
     fn in_lanes(angle: f64) -> [(f64, f64); LANES] {
         let angles = [std::array::from_fn(|lane| if lane % 2 == 0 { angle } else { -angle })];
         let (mut sines, mut cosines) = ([[0.0; LANES]], [[0.0; LANES]]);
-        dispatch_avx2(SinCos { angles: &angles, sines: &mut sines, cosines: &mut cosines });
+        dispatch_avx2(SinCosAll { angles: &angles, sines: &mut sines, cosines: &mut cosines });
+        let (mut wide_sines, mut wide_cosines) = ([[1.0; LANES]], [[1.0; LANES]]);
+        sin_cos_all_dispatched(&angles, &mut wide_sines, &mut wide_cosines);
+        assert_eq!((wide_sines, wide_cosines), (sines, cosines), "in the widest registers: other bits");
         std::array::from_fn(|lane| (if lane % 2 == 0 { sines[0][lane] } else { -sines[0][lane] }, cosines[0][lane]))
     }
 

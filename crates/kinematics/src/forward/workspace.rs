@@ -1,4 +1,4 @@
-use lanes::{Lanes, dispatch_avx2, groups_of, sin_cos_all};
+use lanes::{Lanes, dispatch_avx2, groups_of, sin_cos_all_dispatched};
 use nalgebra::IsometryMatrix3;
 use pulp::{Simd, WithSimd};
 
@@ -43,7 +43,7 @@ impl Workspace {
         for (value, coupling) in self.values.as_flattened_mut().iter_mut().zip(couplings) {
             *value = coupling.multiplier * q[coupling.column] + coupling.offset;
         }
-        sin_cos_all(&self.values, &mut self.sines, &mut self.cosines);
+        sin_cos_all_dispatched(&self.values, &mut self.sines, &mut self.cosines);
         let (values, sines, cosines) =
             (self.values.as_flattened(), self.sines.as_flattened(), self.cosines.as_flattened());
         let mut previous = Placement::IDENTITY;
