@@ -1,7 +1,7 @@
 use nalgebra::DVector;
 use rayon::prelude::*;
 
-use crate::evidence::lbfgs::{Bounds, ITERATIONS, minimise};
+use crate::evidence::lbfgs::{Bounds, Curvature, Limits, minimise};
 use crate::evidence::{Task, Workspace};
 use crate::kernel::covariance::Covariance;
 use crate::kernel::family::Family;
@@ -40,8 +40,10 @@ const AMPLITUDE: f64 = 0.3;
 const NOISE: f64 = 1e-2;
 /// From this number of hyper rows on, half of them are searched first: an eighth of the work leads most of the way.
 const WORTH_TWO_SEARCHES: usize = 200;
-/// Iterations that are left for all of them then.
-const LAST_ITERATIONS: usize = 12;
+/// On half of the rows, and on all of them after that or at once.
+const ON_HALF: Limits = Limits { iterations: 40, tolerance: 1e-2 };
+const AFTER_HALF: Limits = Limits { iterations: 12, tolerance: 1e-3 };
+const AT_ONCE: Limits = Limits { iterations: 40, tolerance: 1e-3 };
 
 /// Minimises (S8) on the hyper rows from equal amplitudes, then climbs κ on all rows. If that does not predict nearly
 /// exactly, the same from a second start, amplitudes (B): (S8) may have several minima, and left-out movements tell them apart.
@@ -67,18 +69,18 @@ pub(crate) fn fit_family(
 struct Search<'a, C> {
     covariance: &'a C,
     conditions: &'a Conditions<'a>,
-    /// What is searched one after the other, each with its iterations.
-    tasks: Vec<(Task, usize)>,
+    /// What is searched one after the other, each with its limits.
+    tasks: Vec<(Task, Limits)>,
 }
 
 impl<'a, C: Covariance> Search<'a, C> {
     fn new(covariance: &'a C, hyper: &[usize], conditions: &'a Conditions<'a>) -> Self {
         let among = |rows: &[usize]| Task::of(covariance, rows, conditions);
         let tasks = if hyper.len() < WORTH_TWO_SEARCHES {
-            vec![(among(hyper), ITERATIONS)]
+            vec![(among(hyper), AT_ONCE)]
         } else {
             let half: Vec<usize> = hyper.iter().step_by(2).copied().collect();
-            vec![(among(&half), ITERATIONS), (among(hyper), LAST_ITERATIONS)]
+            vec![(among(&half), ON_HALF), (among(hyper), AFTER_HALF)]
         };
         Search { covariance, conditions, tasks }
     }
@@ -91,10 +93,13 @@ impl<'a, C: Covariance> Search<'a, C> {
         };
         let bounds = Bounds { lower: with_noise(-23.0, 1e-12_f64.ln()), upper: with_noise(12.0, 2.0) };
         let start = amplitudes.iter().copied().chain([NOISE]).map(f64::ln);
-        let theta = self.tasks.iter().fold(DVector::from_iterator(blocks + 1, start), |theta, (task, iterations)| {
+        let (mut theta, mut curvature) = (DVector::from_iterator(blocks + 1, start), Curvature::default());
+        for (task, limits) in &self.tasks {
             let mut workspace = Workspace::default();
-            minimise(|theta| task.evidence(theta, &mut workspace), &theta, &bounds, *iterations)
-        });
+            theta = minimise(|theta| task.evidence(theta, &mut workspace), &theta, &bounds, *limits, &mut curvature);
+            // J of twice as many rows is about twice as curved.
+            curvature = curvature.times(2.0);
+        }
         let amplitudes: Vec<f64> = theta.iter().take(blocks).map(|log| log.exp()).collect();
         let level = Level::best(&self.covariance.sum(&amplitudes), theta[blocks].exp(), self.conditions)?;
         Some(FamilyFit { amplitudes, level })

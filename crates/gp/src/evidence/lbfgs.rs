@@ -7,12 +7,8 @@ use nalgebra::DVector;
 use crate::evidence::Evidence;
 
 const MEMORY: usize = 10;
-/// As many iterations as ever pay.
-pub(crate) const ITERATIONS: usize = 40;
 /// Stop when no entry of the projected gradient exceeds this.
 const FLAT: f64 = 1e-5;
-/// Stop when a step lowers the value by less than this share.
-const SLOW: f64 = 2.2e-9;
 /// Share of the slope's promise that a step must keep.
 const ARMIJO: f64 = 1e-4;
 const SHORTENINGS: usize = 20;
@@ -41,38 +37,63 @@ impl Bounds {
     }
 }
 
-/// The least point found from `start` in at most so many iterations; a value of none counts as 1e10 with zero gradient.
+/// When a search ends.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Limits {
+    pub(crate) iterations: usize,
+    /// A decrease of the value that is worth no further step.
+    pub(crate) tolerance: f64,
+}
+
+/// What a search has learnt of the curvature: the last steps, and how much they changed the gradient, the newest first.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Curvature(VecDeque<(DVector<f64>, DVector<f64>)>);
+
+impl Curvature {
+    /// That of `factor` times the objective.
+    pub(crate) fn times(mut self, factor: f64) -> Self {
+        self.0.iter_mut().for_each(|(_, y)| *y *= factor);
+        self
+    }
+
+    fn learn(&mut self, s: DVector<f64>, y: DVector<f64>) {
+        if s.dot(&y) > f64::EPSILON * y.norm_squared() {
+            self.0.truncate(MEMORY - 1);
+            self.0.push_front((s, y));
+        }
+    }
+}
+
+/// The least point found from `start`; a value of none counts as 1e10 with zero gradient.
 pub(crate) fn minimise(
     mut objective: impl FnMut(&DVector<f64>) -> Option<Evidence>,
     start: &DVector<f64>,
     bounds: &Bounds,
-    iterations: usize,
+    limits: Limits,
+    curvature: &mut Curvature,
 ) -> DVector<f64> {
     let mut evaluate = |point: &DVector<f64>| {
         objective(point).unwrap_or_else(|| Evidence { value: WALL, gradient: DVector::zeros(point.len()) })
     };
     let mut point = bounds.project(start);
     let mut here = evaluate(&point);
-    let mut pairs = VecDeque::new();
-    for _ in 0..iterations {
+    for _ in 0..limits.iterations {
         let free = bounds.free(&point, &here.gradient);
         if free.amax() < FLAT {
             break;
         }
-        let mut direction = descent(&free, &pairs);
+        let mut direction = descent(&free, curvature);
         if direction.dot(&free) >= 0.0 {
-            pairs.clear();
-            direction = descent(&free, &pairs);
+            *curvature = Curvature::default();
+            direction = descent(&free, curvature);
         }
-        let Some((next, there)) = search(&mut evaluate, bounds, (&point, &here), &direction) else { break };
-        let decrease = (here.value - there.value) / here.value.abs().max(there.value.abs()).max(1.0);
-        let pair = (&next - &point, &there.gradient - &here.gradient);
-        if pair.0.dot(&pair.1) > f64::EPSILON * pair.1.norm_squared() {
-            pairs.truncate(MEMORY - 1);
-            pairs.push_front(pair);
-        }
+        let Some((next, there)) = search(&mut evaluate, bounds, (&point, &here), &direction, limits.tolerance) else {
+            break;
+        };
+        let decrease = here.value - there.value;
+        curvature.learn(&next - &point, &there.gradient - &here.gradient);
         (point, here) = (next, there);
-        if decrease < SLOW {
+        if decrease < limits.tolerance {
             break;
         }
     }
@@ -80,7 +101,7 @@ pub(crate) fn minimise(
 }
 
 /// −Hg by the two-loop recursion over the pairs (s, y), the newest first; variables held at a bound stay.
-fn descent(free: &DVector<f64>, pairs: &VecDeque<(DVector<f64>, DVector<f64>)>) -> DVector<f64> {
+fn descent(free: &DVector<f64>, Curvature(pairs): &Curvature) -> DVector<f64> {
     let mut direction = free.clone();
     let mut shares = Vec::new();
     for (s, y) in pairs {
@@ -100,12 +121,14 @@ fn descent(free: &DVector<f64>, pairs: &VecDeque<(DVector<f64>, DVector<f64>)>) 
     DVector::from_fn(free.len(), |k, _| if free[k] == 0.0 { 0.0 } else { -direction[k] })
 }
 
-/// The first of the steps 1, a cubic's least point, then halves, that lowers the value by enough.
+/// The first of the steps 1, a cubic's least point, then halves, that lowers the value by enough; none once steps promise less than
+/// the tolerance.
 fn search(
     evaluate: &mut impl FnMut(&DVector<f64>) -> Evidence,
     bounds: &Bounds,
     (point, here): (&DVector<f64>, &Evidence),
     direction: &DVector<f64>,
+    tolerance: f64,
 ) -> Option<(DVector<f64>, Evidence)> {
     let mut step = 1.0;
     for shortening in 0..SHORTENINGS {
@@ -114,6 +137,9 @@ fn search(
         let promised = here.gradient.dot(&(&next - point));
         if there.value <= here.value + ARMIJO * promised && there.value < here.value {
             return Some((next, there));
+        }
+        if shortening > 0 && -promised < tolerance {
+            return None;
         }
         let slopes = (here.gradient.dot(direction), there.gradient.dot(direction));
         step *= if shortening == 0 { cubic(here.value, there.value, slopes).clamp(0.1, 0.5) } else { 0.5 };

@@ -3,11 +3,11 @@
 use nalgebra::{DMatrix, DVector};
 
 use crate::evidence::Evidence;
-use crate::evidence::lbfgs::{Bounds, minimise};
+use crate::evidence::lbfgs::{Bounds, Curvature, Limits, minimise};
 
 /// |log m| at most: an axis that hardly moves is not known any better.
 const MOST: f64 = 14.0;
-const ITERATIONS: usize = 200;
+const LIMITS: Limits = Limits { iterations: 200, tolerance: 2.2e-9 };
 
 /// m ≥ 0, (n), with the least mᵀEm / mᵀYm, from equal ones and from the generalised eigenvectors; geometric mean 1.
 pub(super) fn least_error(errors: &DMatrix<f64>, targets: &DMatrix<f64>) -> DVector<f64> {
@@ -15,7 +15,7 @@ pub(super) fn least_error(errors: &DMatrix<f64>, targets: &DMatrix<f64>) -> DVec
     let bounds = Bounds { lower: DVector::repeat(dim, -MOST), upper: DVector::repeat(dim, MOST) };
     let objective = |log: &DVector<f64>| quotient(errors, targets, log);
     let starts = std::iter::once(DVector::zeros(dim)).chain(eigenvectors(errors, targets));
-    let ends = starts.map(|start| minimise(objective, &start, &bounds, ITERATIONS));
+    let ends = starts.map(|start| minimise(objective, &start, &bounds, LIMITS, &mut Curvature::default()));
     let value = |log: &DVector<f64>| objective(log).map_or(f64::INFINITY, |of| of.value);
     let best = ends.min_by(|a, b| value(a).total_cmp(&value(b))).unwrap_or_else(|| DVector::zeros(dim));
     let middle = best.mean();
