@@ -6,7 +6,7 @@
 //! | [`Register`] | as many numbers as a register of the processor at hand holds |
 //! | [`Number`] | what a rule calculates with: one `f64`, or a [`Register`] of them |
 //! | [`exp`], [`exp_in_bulk`] | the exponential without a call or a branch |
-//! | [`sin_cos_all`] | sines and cosines, likewise |
+//! | [`sin_cos_all`], [`sin_cos_all_dispatched`] | sines and cosines, likewise; the latter in the widest registers, whatever its caller uses |
 //! | [`dispatch_avx2`] | runs an operation compiled for AVX2, and not for wider registers |
 //!
 //! Code that uses them runs under [`pulp::Arch::dispatch`] and is compiled for a processor only where it is inlined, so

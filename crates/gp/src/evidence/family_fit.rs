@@ -98,7 +98,7 @@ impl<'a, C: Covariance> Search<'a, C> {
             let mut workspace = Workspace::default();
             theta = minimise(|theta| task.evidence(theta, &mut workspace), &theta, &bounds, *limits, &mut curvature);
             // J of twice as many rows is about twice as curved.
-            curvature = curvature.times(2.0);
+            curvature.scale(2.0);
         }
         let amplitudes: Vec<f64> = theta.iter().take(blocks).map(|log| log.exp()).collect();
         let level = Level::best(&self.covariance.sum(&amplitudes), theta[blocks].exp(), self.conditions)?;

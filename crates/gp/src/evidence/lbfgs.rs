@@ -50,10 +50,9 @@ pub(crate) struct Limits {
 pub(crate) struct Curvature(VecDeque<(DVector<f64>, DVector<f64>)>);
 
 impl Curvature {
-    /// That of `factor` times the objective.
-    pub(crate) fn times(mut self, factor: f64) -> Self {
+    /// Becomes that of `factor` times the objective.
+    pub(crate) fn scale(&mut self, factor: f64) {
         self.0.iter_mut().for_each(|(_, y)| *y *= factor);
-        self
     }
 
     fn learn(&mut self, s: DVector<f64>, y: DVector<f64>) {
@@ -184,7 +183,7 @@ mod tests {
                 Some(Evidence { value: 0.5 * gradient.dot(&(x - &least)), gradient })
             };
             let found = minimise(of, &start, &bounds, LIMITS, &mut curvature);
-            curvature = std::mem::take(&mut curvature).times(factor);
+            curvature.scale(factor);
             (found, evaluations)
         });
         let free = bounds.free(&searches[0].0, &(&bowl * (&searches[0].0 - &least)));

@@ -7,6 +7,7 @@ use crate::evidence::lbfgs::{Bounds, Curvature, Limits, minimise};
 
 /// |log m| at most: an axis that hardly moves is not known any better.
 const MOST: f64 = 14.0;
+/// The logarithm of the quotient to nine digits.
 const LIMITS: Limits = Limits { iterations: 200, tolerance: 2.2e-9 };
 
 /// m ≥ 0, (n), with the least mᵀEm / mᵀYm, from equal ones and from the generalised eigenvectors; geometric mean 1.
