@@ -41,9 +41,9 @@ const NOISE: f64 = 1e-2;
 /// From this number of hyper rows on, half of them are searched first: an eighth of the work leads most of the way.
 const WORTH_TWO_SEARCHES: usize = 200;
 /// On half of the rows, and on all of them after that or at once.
-const ON_HALF: Limits = Limits { iterations: 40, tolerance: 1e-2 };
-const AFTER_HALF: Limits = Limits { iterations: 12, tolerance: 1e-3 };
-const AT_ONCE: Limits = Limits { iterations: 40, tolerance: 1e-3 };
+const ON_HALF: Limits = Limits { iterations: 40, tolerance: 1e-4 };
+const AFTER_HALF: Limits = Limits { iterations: 12, tolerance: 1e-5 };
+const AT_ONCE: Limits = Limits { iterations: 40, tolerance: 1e-5 };
 
 /// Minimises (S8) on the hyper rows from equal amplitudes, then climbs κ on all rows. If that does not predict nearly
 /// exactly, the same from a second start, amplitudes (B): (S8) may have several minima, and left-out movements tell them apart.
