@@ -26,15 +26,24 @@ pub(crate) type Point = (f64, f64);
 pub(crate) struct Page {
     connection: Connection,
     address: String,
+    /// Pixels of the screen for each CSS pixel along a side.
+    pixels: f64,
 }
 
 impl Page {
     /// Opens a file and waits until it is loaded; none where there is no browser.
     pub(crate) fn open(file: &Path) -> Option<Page> {
+        Page::open_on(file, 1.0)
+    }
+
+    /// The same on a screen with so many pixels for each CSS pixel along a side: without a graphics card a scene takes as long
+    /// as it has pixels.
+    pub(crate) fn open_on(file: &Path, pixels: f64) -> Option<Page> {
         let program = program::find()?;
         let mut page = Page {
             connection: Connection::open(&program),
             address: format!("file://{}", file.canonicalize().unwrap().display()),
+            pixels,
         };
         for domain in ["Page", "Runtime", "Log", "Network"] {
             page.call(&format!("{domain}.enable"), &json!({}));
@@ -68,7 +77,7 @@ impl Page {
 
     /// Gives the window another size, CSS pixels.
     pub(crate) fn resize(&mut self, width: u32, height: u32) {
-        let size = json!({ "width": width, "height": height, "deviceScaleFactor": 1, "mobile": false });
+        let size = json!({ "width": width, "height": height, "deviceScaleFactor": self.pixels, "mobile": false });
         self.call("Emulation.setDeviceMetricsOverride", &size);
     }
 

@@ -22,6 +22,9 @@ use super::browser::Page;
 
 const CANVAS: &str = "#view canvas";
 
+/// Pixels of the screen for each CSS pixel along a side: few are drawn quickly.
+const PIXELS: f64 = 0.5;
+
 /// The folder of a quick run of the grasp, made once: so what the program computes today is looked at.
 fn run() -> &'static Path {
     static FOLDER: OnceLock<PathBuf> = OnceLock::new();
@@ -39,17 +42,26 @@ fn run() -> &'static Path {
 
 /// The page with the view, unless there is no browser; before one gets to the view, so that it has not begun to play.
 fn opened() -> Option<Page> {
-    let mut page = Page::open(&run().join("report.html"))?;
+    opened_on(PIXELS)
+}
+
+/// The same on a screen with so many pixels for each CSS pixel along a side.
+fn opened_on(pixels: f64) -> Option<Page> {
+    let mut page = Page::open_on(&run().join("report.html"), pixels)?;
     page.wait_until("'policyAlignView' in window");
     Some(page)
 }
 
 /// The view, which does not play by itself.
 fn page() -> Option<Page> {
-    let mut page = opened()?;
+    opened().map(at_rest)
+}
+
+/// Stops the view and scrolls to it.
+fn at_rest(mut page: Page) -> Page {
     view::<()>(&mut page, "pause()");
     page.middle_of(CANVAS);
-    Some(page)
+    page
 }
 
 /// Tells the view something, and what it answers.
