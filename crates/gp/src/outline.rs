@@ -3,11 +3,11 @@
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use linalg::Factor;
 use nalgebra::DMatrix;
 
 use crate::inducing::pivots::pivots;
 use crate::kernel::covariance::{Covariance, NOISE_FLOOR, among, jittered};
-use crate::kernel::factor::Factor;
 use crate::kernel::panel::Panel;
 use crate::kernel::triangle::InverseOfLower;
 use crate::kernel::whitening::Whitening;

@@ -1,8 +1,8 @@
 use std::cmp::Reverse;
 
+use linalg::{symmetric_eigen, symmetric_eigenvalues};
 use nalgebra::DMatrix;
 
-use super::eigen::{symmetric_eigen, symmetric_eigenvalues};
 use super::two_means::two_means;
 use crate::{AlignError, Split, SplitCause};
 
@@ -64,13 +64,13 @@ fn weak_part(
     let weak = |values: &[f64]| values.iter().take_while(|&&value| value < threshold).count();
     if matrix.diagonal().min() >= threshold {
         *decompositions += 1;
-        let values = symmetric_eigenvalues(matrix)?;
+        let values = symmetric_eigenvalues(matrix).ok_or(AlignError::NoConvergence)?;
         if weak(&values) <= 1 {
             return Ok((values[1], DMatrix::zeros(matrix.ncols(), 0)));
         }
     }
     *decompositions += 1;
-    let (values, vectors) = symmetric_eigen(matrix)?;
+    let (values, vectors) = symmetric_eigen(matrix).ok_or(AlignError::NoConvergence)?;
     Ok((values[1], vectors.columns(0, weak(&values)).into_owned()))
 }
 

@@ -2,7 +2,6 @@
 
 pub(crate) mod bipartition;
 pub(crate) mod compensated;
-pub(crate) mod eigen;
 pub(crate) mod group_offsets;
 pub(crate) mod laplacian;
 pub(crate) mod linear_term;

@@ -1,5 +1,3 @@
-use faer::linalg::matmul::triangular::{BlockStructure, matmul};
-use faer::{Accum, MatMut, MatRef, Par};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
@@ -88,21 +86,5 @@ fn mutual(blocks: &[Block], count: usize) -> DMatrix<f64> {
 
 /// QᵀQ over the samples of one block, for its models only; the lower triangle counts.
 fn gram(block: &Block) -> DMatrix<f64> {
-    let count = block.models.len();
-    let mut gram = DMatrix::zeros(count, count);
-    let shares = MatRef::from_column_major_slice(block.shares.as_flattened(), LANES * block.groups, count);
-    let lower = BlockStructure::TriangularLower;
-    let whole = BlockStructure::Rectangular;
-    matmul(
-        MatMut::from_column_major_slice_mut(gram.as_mut_slice(), count, count),
-        lower,
-        Accum::Replace,
-        shares.transpose(),
-        whole,
-        shares,
-        whole,
-        1.0,
-        Par::Seq,
-    );
-    gram
+    linalg::gram(block.shares.as_flattened(), LANES * block.groups)
 }

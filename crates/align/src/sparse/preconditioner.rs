@@ -1,15 +1,14 @@
-use approx_chol::input::Laplacian;
-use approx_chol::{Config, Factor, ScalingPolicy, factorize_with};
+use linalg::LaplacianFactor;
 
 use super::group::Group;
 use super::sparsifier::sparsifier;
 use crate::AlignError;
 
-/// An approximate Cholesky factorisation (Kyng, Sachdeva) of the links of a group that stand for all: it makes
-/// iterations few and has no part in what they converge to.
+/// An approximate factor of the links of a group that stand for all: it makes iterations few and has no part in what they
+/// converge to.
 #[derive(Debug)]
 pub(crate) struct Preconditioner {
-    factor: Factor<f64>,
+    factor: LaplacianFactor,
 }
 
 impl Preconditioner {
@@ -19,16 +18,12 @@ impl Preconditioner {
         let links = sparsifier(group).into_iter();
         let (ends, weights): (Vec<(u32, u32)>, Vec<f64>) = links.map(|(k, j, weight)| ((k, j), weight)).unzip();
         let (ones, others): (Vec<u32>, Vec<u32>) = ends.into_iter().unzip();
-        let laplacian = Laplacian::weighted(group.samples.n_trajectories, &ones, &others, &weights)
-            .map_err(|_| AlignError::NoConvergence)?;
-        let factor = factorize_with(laplacian, Config::default(), ScalingPolicy::default())
-            .map_err(|_| AlignError::NoConvergence)?;
-        Ok(Preconditioner { factor })
+        let factor = LaplacianFactor::new(group.samples.n_trajectories, &ones, &others, &weights);
+        Ok(Preconditioner { factor: factor.ok_or(AlignError::NoConvergence)? })
     }
 
     /// About L⁺r, (K), in place; 0 outside the group. Allocates nothing once `scratch` has grown.
     pub(crate) fn apply(&self, right: &mut [f64], scratch: &mut Vec<f64>) {
-        scratch.resize(self.factor.scratch_len(), 0.0);
-        self.factor.solve_in_place(right, scratch).expect("vectors have one length");
+        self.factor.solve(right, scratch);
     }
 }

@@ -1,10 +1,10 @@
+use linalg::symmetric_eigen;
 use nalgebra::DMatrix;
 
 use super::conjugate_gradients::{add, dot};
 use super::group::{Group, Parts};
 use super::preconditioner::Preconditioner;
 use crate::AlignError;
-use crate::offsets::eigen::symmetric_eigen;
 
 /// The second eigenvalue has settled when a round changes it by less than this part.
 const SETTLED: f64 = 1e-6;
@@ -71,7 +71,7 @@ fn ritz(group: &Group<'_>, basis: &[Vec<f64>], wanted: usize) -> Result<Ritz, Al
     let mut parts = Parts::default();
     let images: Vec<Vec<f64>> = basis.iter().map(|vector| image(group, vector, &mut parts)).collect();
     let projected = DMatrix::from_fn(basis.len(), basis.len(), |i, j| dot(&basis[i.max(j)], &images[i.min(j)]));
-    let (values, coordinates) = symmetric_eigen(&projected)?;
+    let (values, coordinates) = symmetric_eigen(&projected).ok_or(AlignError::NoConvergence)?;
     let wanted = wanted.min(basis.len());
     let combined = |of: &[Vec<f64>], column: usize, first: usize| {
         let mut sum = vec![0.0; of[0].len()];

@@ -8,11 +8,11 @@ pub(crate) mod lbfgs;
 use std::ops::Range;
 
 use lanes::{LANES, Number, Register};
+use linalg::{Factor, subtract_outer};
 use nalgebra::{DMatrix, DVector};
 use pulp::{Arch, Simd, WithSimd};
 
 use crate::kernel::covariance::{Covariance, add_noise};
-use crate::kernel::factor::{Factor, add_product_below, view};
 use crate::left_out::level::Conditions;
 
 /// Pull of every log parameter towards −4, and its strength: the last term of (S8).
@@ -91,7 +91,7 @@ impl Task {
         if columns > 1.0 {
             *slack *= columns;
         }
-        add_product_below(slack, -1.0, view(&weights), view(&weights).transpose());
+        subtract_outer(slack, &weights);
         let slacks = Arch::new().dispatch(InnerProducts { matrix: slack, blocks: &self.blocks });
         let noise_slack: f64 = self.noise_weights.iter().enumerate().map(|(i, weight)| weight * slack[(i, i)]).sum();
         let gradient = DVector::from_fn(theta.len(), |k, _| {

@@ -2,12 +2,10 @@
 
 use std::ops::Range;
 
-use faer::linalg::matmul::matmul;
-use faer::{Accum, Par};
+use linalg::transposed_product;
 use nalgebra::DMatrix;
 
 use crate::kernel::covariance::Covariance;
-use crate::kernel::factor::{view, view_mut};
 use crate::left_out::level::Conditions;
 
 /// A prior, the rows that represent all, and what all are to be conditioned on.
@@ -42,10 +40,7 @@ impl<C: Covariance> Features<'_, C> {
 
     /// D^{-1/2} K_nm W of these rows, (n, k), with W, (m, k).
     pub(crate) fn times(&self, rows: &[usize], w: &DMatrix<f64>) -> DMatrix<f64> {
-        let transposed = self.transposed(rows);
-        let mut product = DMatrix::zeros(rows.len(), w.ncols());
-        matmul(view_mut(&mut product), Accum::Replace, view(&transposed).transpose(), view(w), 1.0, Par::Seq);
-        product
+        transposed_product(&self.transposed(rows), w)
     }
 
     /// D^{-1/2}.

@@ -1,12 +1,12 @@
 //! Leave-one-trajectory-out prediction of a model that was conditioned on all rows through some of them: closed form (S36).
 
+use linalg::{Factor, subtract_gram, subtract_outer};
 use nalgebra::{DMatrix, DMatrixView};
 use rayon::prelude::*;
 
 use crate::inducing::features::Features;
 use crate::inducing::spectrum::Spectrum;
 use crate::kernel::covariance::Covariance;
-use crate::kernel::factor::{Factor, add_product_below, view};
 use crate::left_out::LeftOutPredictions;
 
 /// Rows whose features are at hand together.
@@ -86,7 +86,7 @@ impl<C: Covariance> Leaving<'_, C> {
     fn few(&self, rows: &[usize], products: Products<'_>) -> Option<Group> {
         let (mut errors, known, b) = self.own(rows, products.map(DMatrix::as_view));
         let mut rest = DMatrix::identity(rows.len(), rows.len());
-        add_product_below(&mut rest, -1.0, view(&b), view(&b).transpose());
+        subtract_outer(&mut rest, &b);
         let factor = Factor::new(rest)?;
         factor.solve(&mut errors);
         let inverse = factor.inverse_triangle();
@@ -106,7 +106,7 @@ impl<C: Covariance> Leaving<'_, C> {
         let mut along = DMatrix::zeros(count, self.coefficients.ncols());
         for (at, part) in rows.chunks(TOGETHER).enumerate() {
             let (errors, _, b) = own(at * TOGETHER, part);
-            add_product_below(&mut rest, -1.0, view(&b).transpose(), view(&b));
+            subtract_gram(&mut rest, &b);
             along += b.tr_mul(&errors);
         }
         let factor = Factor::new(rest)?;

@@ -6,6 +6,7 @@ pub(crate) mod pivots;
 mod spectrum;
 mod tree;
 
+use linalg::Factor;
 use nalgebra::DMatrix;
 
 use crate::inducing::features::Features;
@@ -13,7 +14,6 @@ use crate::inducing::left_out::{Groups, Leaving};
 use crate::inducing::pivots::pivots;
 use crate::inducing::spectrum::Spectrum;
 use crate::kernel::covariance::{Covariance, NOISE_FLOOR, among, jittered};
-use crate::kernel::factor::Factor;
 use crate::left_out::LeftOutPredictions;
 use crate::left_out::level::{Conditions, climb, kappas, raised};
 use crate::rows::thinning::every_so_many;

@@ -1,12 +1,10 @@
 //! Which rows represent all: pivoted Cholesky (S34).
 
-use faer::linalg::matmul::matmul;
-use faer::{Accum, MatRef, Par};
+use linalg::transposed_product_of_rows;
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 
 use crate::kernel::covariance::Covariance;
-use crate::kernel::factor::{view, view_mut};
 use crate::rows::thinning::scattered;
 
 /// Rows that are candidates, for each that is chosen.
@@ -43,10 +41,7 @@ pub(crate) fn pivots(
         let parts = factor.as_mut_slice().par_chunks_mut(most * TOGETHER);
         let each = parts.zip(remaining.par_chunks_mut(TOGETHER)).zip(covariances.par_chunks(TOGETHER));
         each.for_each(|((columns, remaining), covariances)| {
-            let count = remaining.len();
-            let mut known = DMatrix::zeros(count, 1);
-            let so_far = MatRef::from_column_major_slice(columns, most, count).subrows(0, done);
-            matmul(view_mut(&mut known), Accum::Replace, so_far.transpose(), view(&own), 1.0, Par::Seq);
+            let known = transposed_product_of_rows(columns, most, &own);
             for (at, remaining) in remaining.iter_mut().enumerate() {
                 let next = (covariances[at] - known[at]) / root;
                 columns[at * most + done] = next;

@@ -1,15 +1,11 @@
 //! All rows as seen through the inducing ones: singular values of their features (S35), and from these the model at any level of noise.
 
-use faer::diag::Diag;
-use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::linalg::svd::{ComputeSvdVectors, svd, svd_scratch};
-use faer::{Par, Spec};
+use linalg::{Factor, Svd, qr_triangle, singular_values};
 use nalgebra::DMatrix;
 
 use crate::inducing::features::Features;
-use crate::inducing::tree::{triangle, upper};
+use crate::inducing::tree::triangle;
 use crate::kernel::covariance::Covariance;
-use crate::kernel::factor::{Factor, view, view_mut};
 
 /// log σ² that are compared, in equal steps.
 const NOISE: (f64, f64) = (-28.0, 2.0);
@@ -40,7 +36,7 @@ impl Spectrum {
         // R of Φ is that of K_nm times L⁻ᵀ: its transpose solves L Xᵀ = Rᵀ.
         let mut transposed = all.view((0, 0), (count, count)).transpose();
         lower.whiten(&mut transposed);
-        let (u, singular, v) = decomposed(&transposed.transpose())?;
+        let Svd { u, singular, v } = singular_values(&transposed.transpose())?;
         let mut w = v.clone();
         lower.whiten_transposed(&mut w);
         let rest = all.view((count, count), (targets.ncols(), targets.ncols())).norm_squared();
@@ -85,20 +81,6 @@ impl Spectrum {
             let variance = s * s + noise;
             row *= s * (variance + noise - own).sqrt() / variance;
         }
-        upper(shrunk)
+        qr_triangle(shrunk)
     }
-}
-
-/// U, s and V of a square matrix.
-fn decomposed(matrix: &DMatrix<f64>) -> Option<(DMatrix<f64>, Vec<f64>, DMatrix<f64>)> {
-    let count = matrix.nrows();
-    let vectors = ComputeSvdVectors::Full;
-    let mut memory = MemBuffer::new(svd_scratch::<f64>(count, count, vectors, vectors, Par::Seq, Spec::default()));
-    let [mut u, mut v] = [(); 2].map(|()| DMatrix::zeros(count, count));
-    let mut singular = Diag::<f64>::zeros(count);
-    let stack = MemStack::new(&mut memory);
-    let (u_view, v_view) = (Some(view_mut(&mut u)), Some(view_mut(&mut v)));
-    svd(view(matrix), singular.as_mut(), u_view, v_view, Par::Seq, stack, Spec::default()).ok()?;
-    let singular: Vec<f64> = singular.column_vector().iter().copied().collect();
-    singular.iter().all(|s| s.is_finite()).then_some((u, singular, v))
 }

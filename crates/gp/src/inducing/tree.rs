@@ -2,12 +2,8 @@
 
 use std::ops::Range;
 
-use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::linalg::qr::no_pivoting::factor::{qr_in_place, qr_in_place_scratch, recommended_block_size};
-use faer::{Mat, Par, Spec};
+use linalg::qr_triangle;
 use nalgebra::DMatrix;
-
-use crate::kernel::factor::view_mut;
 
 /// Rows of a leaf, at least, and in numbers of columns, so that most work is done in leaves.
 const LEAF: usize = 2048;
@@ -28,7 +24,7 @@ pub(crate) fn triangle(
 
 fn of_leaves(leaves: Range<usize>, leaf: &(impl Fn(usize) -> DMatrix<f64> + Sync)) -> DMatrix<f64> {
     if leaves.len() <= 1 {
-        return upper(leaf(leaves.start));
+        return qr_triangle(leaf(leaves.start));
     }
     let middle = leaves.start + leaves.len().next_power_of_two() / 2;
     let (first, second) = rayon::join(|| of_leaves(leaves.start..middle, leaf), || of_leaves(middle..leaves.end, leaf));
@@ -36,19 +32,7 @@ fn of_leaves(leaves: Range<usize>, leaf: &(impl Fn(usize) -> DMatrix<f64> + Sync
     let mut stacked = DMatrix::zeros(2 * columns, columns);
     stacked.rows_mut(0, columns).copy_from(&first);
     stacked.rows_mut(columns, columns).copy_from(&second);
-    upper(stacked)
-}
-
-/// R of A = QR, (c, c), of A with any number of rows.
-pub(crate) fn upper(mut matrix: DMatrix<f64>) -> DMatrix<f64> {
-    let (rows, columns) = matrix.shape();
-    let block = recommended_block_size::<f64>(rows, columns);
-    let mut reflectors = Mat::zeros(block, rows.min(columns));
-    let mut memory = MemBuffer::new(qr_in_place_scratch::<f64>(rows, columns, block, Par::Seq, Spec::default()));
-    let stack = MemStack::new(&mut memory);
-    qr_in_place(view_mut(&mut matrix), reflectors.as_mut(), Par::Seq, stack, Spec::default());
-    matrix.fill_lower_triangle(0.0, 1);
-    matrix.resize_vertically(columns, 0.0)
+    qr_triangle(stacked)
 }
 
 #[cfg(test)]

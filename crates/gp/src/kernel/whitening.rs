@@ -1,7 +1,7 @@
 //! What the rows of a model say of a function: the part of its prior variance that they explain.
 
 use crate::kernel::covariance::{Covariance, add_noise, among, jittered};
-use crate::kernel::factor::LazyFactor;
+use crate::kernel::lazy_factor::LazyFactor;
 use crate::kernel::panel::Panel;
 use crate::kernel::triangle::Upper;
 

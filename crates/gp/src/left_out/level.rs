@@ -2,10 +2,10 @@
 
 use std::mem;
 
+use linalg::Factor;
 use nalgebra::DMatrix;
 
 use crate::kernel::covariance::{NOISE_FLOOR, add_noise};
-use crate::kernel::factor::Factor;
 use crate::left_out::{LeftOutPredictions, left_out};
 
 /// Training data of a model.

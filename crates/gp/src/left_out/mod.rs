@@ -7,12 +7,9 @@ pub(crate) mod level;
 pub(crate) mod typical;
 pub(crate) mod weights_test;
 
-use faer::linalg::matmul::matmul;
-use faer::{Accum, Par};
+use linalg::{Factor, transposed_product};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
-
-use crate::kernel::factor::{Factor, view, view_mut};
 
 /// Leave-one-trajectory-out predictions in closed form, (S10), (S11), (R3).
 #[derive(Debug, Clone, PartialEq)]
@@ -113,9 +110,7 @@ fn block(x: &DMatrix<f64>, weights: &DMatrix<f64>, rows: &[usize]) -> Option<(DM
     // L⁻¹ is zero above the first of these rows.
     let first = *rows.iter().min()?;
     let columns = x.rows_range(first..).select_columns(rows);
-    let mut precision = DMatrix::zeros(rows.len(), rows.len());
-    matmul(view_mut(&mut precision), Accum::Replace, view(&columns).transpose(), view(&columns), 1.0, Par::Seq);
-    let factor = Factor::new(precision)?;
+    let factor = Factor::new(transposed_product(&columns, &columns))?;
     let mut errors = weights.select_rows(rows);
     factor.solve(&mut errors);
     let inverse = factor.inverse_triangle();

@@ -8,7 +8,7 @@ use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
 
 use crate::GpError;
-use crate::kernel::factor::LazyFactor;
+use crate::kernel::lazy_factor::LazyFactor;
 use crate::kernel::triangle::Upper;
 use crate::kernel::whitening::Whitening;
 use crate::rows::MOST_ROWS;

@@ -8,8 +8,8 @@ use pulp::Arch;
 
 use crate::dimension::require;
 use crate::kernel::direct_block::{DirectBlock, DirectCovariance, trend};
-use crate::kernel::factor::LazyFactor;
 use crate::kernel::falling::Falling;
+use crate::kernel::lazy_factor::LazyFactor;
 use crate::kernel::panel::Panel;
 use crate::kernel::row_table::{RowTable, TOGETHER};
 use crate::kernel::term::Term;
