@@ -91,8 +91,8 @@ impl<P> Outline<P> {
             }
             let caution = CAUTION * matrix.diagonal().mean();
             (0..chosen.len()).for_each(|at| matrix[(at, at)] += caution);
-            let factor = InverseOfLower::new(&Factor::new(matrix)?.into_matrix());
-            Some((part(&chosen), factor))
+            let factor = Factor::new(matrix)?;
+            Some((part(&chosen), factor.into()))
         };
         self.part.get_or_init(new).as_ref()
     }

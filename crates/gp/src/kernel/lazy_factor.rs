@@ -13,7 +13,7 @@ pub(crate) struct LazyFactor(OnceLock<Option<InverseOfLower>>);
 
 impl From<Factor> for LazyFactor {
     fn from(factor: Factor) -> Self {
-        LazyFactor(OnceLock::from(Some(InverseOfLower::new(&factor.into_matrix()))))
+        LazyFactor(OnceLock::from(Some(factor.into())))
     }
 }
 
@@ -21,8 +21,7 @@ impl LazyFactor {
     /// Replaces B by L⁻¹B. If the covariance has no factor, B becomes 0: rows that cannot be told apart say nothing, and
     /// the prior remains.
     pub(crate) fn whiten(&self, b: &mut Panel, covariance: impl FnOnce() -> DMatrix<f64>) {
-        let factor = || Factor::new(covariance()).map(|factor| InverseOfLower::new(&factor.into_matrix()));
-        match self.0.get_or_init(factor) {
+        match self.0.get_or_init(|| Factor::new(covariance()).map(InverseOfLower::from)) {
             Some(factor) => factor.apply(b),
             None => b.clear(),
         }

@@ -6,6 +6,7 @@
 #![allow(clippy::inline_always, reason = "vector instructions reach only what is inlined")]
 
 use lanes::{LANES, Lanes, Number, Register, groups_of};
+use linalg::Factor;
 use nalgebra::DMatrix;
 use pulp::{Arch, Simd, WithSimd};
 
@@ -22,6 +23,12 @@ pub(crate) struct InverseOfLower {
 pub(crate) struct Upper {
     tiles: Vec<Lanes>,
     len: usize,
+}
+
+impl From<Factor> for InverseOfLower {
+    fn from(factor: Factor) -> Self {
+        InverseOfLower::new(&factor.into_matrix())
+    }
 }
 
 impl InverseOfLower {
