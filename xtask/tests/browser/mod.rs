@@ -190,20 +190,24 @@ impl Page {
         self.call("Page.captureScreenshot", &json!({}))["data"].as_str().unwrap().to_owned()
     }
 
-    /// How light each pixel of the first element is that a selector names, 0 to 255, in ascending order.
+    /// How light each visible pixel of the first element is that a selector names, 0 to 255, in ascending order. A screenshot of
+    /// the window is cut out: one of the element alone draws the whole page anew.
     pub(crate) fn shades(&mut self, selector: &str) -> Vec<u8> {
         self.middle_of(selector);
-        let area: Value = self.evaluate(&format!(
+        let [left, top, right, bottom]: [f64; 4] = self.evaluate(&format!(
             "(() => {{ const box = document.querySelector({selector:?}).getBoundingClientRect();
-                return {{ x: box.x + scrollX, y: box.y + scrollY, width: box.width, height: box.height, scale: 1 }}; }})()"
+                return [Math.max(box.left, 0), Math.max(box.top, 0),
+                    Math.min(box.right, innerWidth), Math.min(box.bottom, innerHeight)]; }})()"
         ));
-        let arguments = json!({ "clip": area, "captureBeyondViewport": true });
-        let file = self.call("Page.captureScreenshot", &arguments)["data"].as_str().unwrap().to_owned();
-        let file = data_encoding::BASE64.decode(file.as_bytes()).unwrap();
+        let file = data_encoding::BASE64.decode(self.screenshot().as_bytes()).unwrap();
         let mut reader = png::Decoder::new(std::io::Cursor::new(file)).read_info().unwrap();
         let mut bytes = vec![0; reader.output_buffer_size().unwrap()];
         let frame = reader.next_frame(&mut bytes).unwrap();
-        let pixels = bytes[..frame.buffer_size()].chunks(frame.color_type.samples());
+        let within = |from: f64, to: f64| (from * self.pixels).ceil() as usize..(to * self.pixels).floor() as usize;
+        let (columns, rows) = (within(left, right), within(top, bottom));
+        let lines = bytes[..frame.buffer_size()].chunks(frame.line_size).take(rows.end).skip(rows.start);
+        let pixels =
+            lines.flat_map(|line| line.chunks(frame.color_type.samples()).take(columns.end).skip(columns.start));
         let mut shades: Vec<u8> =
             pixels.map(|pixel| (pixel[..3].iter().map(|&part| u16::from(part)).sum::<u16>() / 3) as u8).collect();
         shades.sort_unstable();
