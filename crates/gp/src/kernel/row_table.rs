@@ -2,7 +2,7 @@
 
 use lanes::{LANES, Lanes, Register};
 use nalgebra::DMatrix;
-use pulp::Simd;
+use pulp::{Arch, Simd, WithSimd};
 
 /// Groups of rows that stand together.
 pub(crate) const GROUPS: usize = 4;
@@ -57,4 +57,28 @@ impl Abreast {
 #[inline(always)]
 pub(crate) fn firsts<const U: usize>() -> impl Iterator<Item = usize> {
     (0..GROUPS).step_by(U)
+}
+
+/// A sum over rows in vector registers, U groups of rows at a time.
+pub(crate) trait OverRows {
+    type Output;
+
+    /// Is inlined always, or it is compiled for the oldest machine.
+    fn run<S: Simd, const U: usize>(self, simd: S) -> Self::Output;
+}
+
+/// The sum with the widest registers and as many groups at a time as they hold.
+pub(crate) fn over_rows<T: OverRows>(sum: T) -> T::Output {
+    Arch::new().dispatch(InRegisters(sum))
+}
+
+struct InRegisters<T>(T);
+
+impl<T: OverRows> WithSimd for InRegisters<T> {
+    type Output = T::Output;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> T::Output {
+        if const { S::REGISTER_COUNT >= 32 } { self.0.run::<S, 4>(simd) } else { self.0.run::<S, 2>(simd) }
+    }
 }

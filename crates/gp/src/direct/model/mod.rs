@@ -4,14 +4,13 @@ mod sums;
 
 use motion::Policy;
 use nalgebra::{DMatrix, DMatrixView, DVectorView, DVectorViewMut};
-use pulp::Arch;
 
 use crate::dimension::require;
 use crate::kernel::direct_block::{DirectBlock, DirectCovariance, trend};
 use crate::kernel::falling::Falling;
 use crate::kernel::lazy_factor::LazyFactor;
 use crate::kernel::panel::Panel;
-use crate::kernel::row_table::{RowTable, TOGETHER};
+use crate::kernel::row_table::{RowTable, TOGETHER, over_rows};
 use crate::kernel::term::Term;
 use crate::kernel::whitening::Whitening;
 use crate::outline::Outline;
@@ -88,7 +87,7 @@ impl DirectModel {
         let mut covariances = vec![0.0; self.z.ncols().next_multiple_of(TOGETHER)];
         for (at, state) in states.column_iter().enumerate() {
             self.scaling.with_coordinates(state.as_slice(), |z| {
-                Arch::new().dispatch(CovariancesWithRows { model: self, z, covariances: &mut covariances });
+                over_rows(CovariancesWithRows { model: self, z, covariances: &mut covariances });
             });
             panel.set_column(at, &covariances[..self.z.ncols()]);
         }
@@ -122,7 +121,7 @@ impl DirectModel {
     }
 
     fn moving_action_into(&self, state: &[f64], action: &mut [f64]) {
-        self.scaling.with_coordinates(state, |z| Arch::new().dispatch(Action { model: self, z, place: action }));
+        self.scaling.with_coordinates(state, |z| over_rows(Action { model: self, z, place: action }));
         for action in action {
             *action *= self.unit;
         }

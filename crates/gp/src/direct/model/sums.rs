@@ -3,10 +3,10 @@
 #![allow(clippy::inline_always, reason = "vector instructions reach only what is inlined")]
 
 use lanes::{LANES, Lanes, Number, Register, total};
-use pulp::{Simd, WithSimd};
+use pulp::Simd;
 
 use super::DirectModel;
-use crate::kernel::row_table::{Abreast, GROUPS, firsts};
+use crate::kernel::row_table::{Abreast, GROUPS, OverRows, firsts};
 use crate::rows::scaling::FEW;
 
 /// k(x)ᵀA at a scaled state `z`, (n + p), into (n).
@@ -53,16 +53,9 @@ impl DirectModel {
     }
 }
 
-impl WithSimd for Action<'_> {
+impl OverRows for Action<'_> {
     type Output = ();
 
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) {
-        if const { S::REGISTER_COUNT >= 32 } { self.run::<S, 4>(simd) } else { self.run::<S, 2>(simd) }
-    }
-}
-
-impl Action<'_> {
     #[inline(always)]
     fn run<S: Simd, const U: usize>(self, simd: S) {
         let Action { model, z, place } = self;
@@ -103,16 +96,9 @@ fn add<S: Simd, const U: usize>(
     }
 }
 
-impl WithSimd for CovariancesWithRows<'_> {
+impl OverRows for CovariancesWithRows<'_> {
     type Output = ();
 
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) {
-        if const { S::REGISTER_COUNT >= 32 } { self.run::<S, 4>(simd) } else { self.run::<S, 2>(simd) }
-    }
-}
-
-impl CovariancesWithRows<'_> {
     #[inline(always)]
     fn run<S: Simd, const U: usize>(self, simd: S) {
         let CovariancesWithRows { model, z, covariances } = self;

@@ -3,12 +3,11 @@
 mod sums;
 
 use nalgebra::{DMatrix, DMatrixView, DVector, DVectorView};
-use pulp::Arch;
 
 use crate::kernel::block::Block;
 use crate::kernel::falling::Falling;
 use crate::kernel::panel::Panel;
-use crate::kernel::row_table::{RowTable, TOGETHER};
+use crate::kernel::row_table::{RowTable, TOGETHER, over_rows};
 use crate::kernel::slope_covariance::trend;
 use crate::kernel::term::Term;
 use crate::rows::scaling::Scaling;
@@ -99,7 +98,7 @@ impl Expansion {
     /// π̂ at a state with its context, (n + p), into (n), in units of the state per second. Allocates nothing.
     pub(crate) fn action_into(&self, state: &[f64], action: &mut [f64]) {
         self.scaling.with_coordinates(state, |z| {
-            Arch::new().dispatch(Action { expansion: self, z, place: action });
+            over_rows(Action { expansion: self, z, place: action });
             for (k, action) in action.iter_mut().enumerate() {
                 *action = self.speed * (*action + (self.constant[k] + self.sloped(k, z)));
             }
@@ -114,7 +113,7 @@ impl Expansion {
     /// φ̂(x), in units of the state squared per second; meaningful without rotational blocks only. Allocates nothing.
     pub(crate) fn potential(&self, state: &[f64]) -> f64 {
         self.scaling.with_coordinates(state, |z| {
-            let falling = Arch::new().dispatch(PotentialSum { expansion: self, z });
+            let falling = over_rows(PotentialSum { expansion: self, z });
             let each = z.iter().enumerate();
             let trend: f64 = each.map(|(k, z_k)| z_k * (self.constant[k] + 0.5 * self.sloped(k, z))).sum();
             -self.speed * self.scaling.scale * (falling + trend)
@@ -126,7 +125,7 @@ impl Expansion {
     pub(crate) fn policy_with_rows(&self, state: &[f64]) -> DMatrix<f64> {
         let mut covariances = DMatrix::zeros(self.weights.len().next_multiple_of(TOGETHER), self.moving());
         self.scaling.with_coordinates(state, |z| {
-            Arch::new().dispatch(PolicyWithRows { expansion: self, z, covariances: &mut covariances });
+            over_rows(PolicyWithRows { expansion: self, z, covariances: &mut covariances });
         });
         covariances
     }

@@ -4,10 +4,10 @@
 
 use lanes::{LANES, Number, Register, total};
 use nalgebra::DMatrix;
-use pulp::{Simd, WithSimd};
+use pulp::Simd;
 
 use super::Expansion;
-use crate::kernel::row_table::{Abreast, GROUPS, firsts};
+use crate::kernel::row_table::{Abreast, GROUPS, OverRows, firsts};
 use crate::rows::scaling::FEW;
 
 /// Σ α (g n' − h β (z − z')) over all rows at a scaled state `z`, (n + p), into (n).
@@ -80,16 +80,9 @@ impl Expansion {
     }
 }
 
-impl WithSimd for Action<'_> {
+impl OverRows for Action<'_> {
     type Output = ();
 
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) {
-        if const { S::REGISTER_COUNT >= 32 } { self.run::<S, 4>(simd) } else { self.run::<S, 2>(simd) }
-    }
-}
-
-impl Action<'_> {
     #[inline(always)]
     fn run<S: Simd, const U: usize>(self, simd: S) {
         let Action { expansion, z, place } = self;
@@ -131,16 +124,9 @@ impl<S: Simd, const U: usize> Rows<'_, S, U> {
     }
 }
 
-impl WithSimd for PotentialSum<'_> {
+impl OverRows for PotentialSum<'_> {
     type Output = f64;
 
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) -> f64 {
-        if const { S::REGISTER_COUNT >= 32 } { self.run::<S, 4>(simd) } else { self.run::<S, 2>(simd) }
-    }
-}
-
-impl PotentialSum<'_> {
     #[inline(always)]
     fn run<S: Simd, const U: usize>(self, simd: S) -> f64 {
         let mut sums = [0.0; LANES];
@@ -160,16 +146,9 @@ impl PotentialSum<'_> {
     }
 }
 
-impl WithSimd for PolicyWithRows<'_> {
+impl OverRows for PolicyWithRows<'_> {
     type Output = ();
 
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) {
-        if const { S::REGISTER_COUNT >= 32 } { self.run::<S, 4>(simd) } else { self.run::<S, 2>(simd) }
-    }
-}
-
-impl PolicyWithRows<'_> {
     #[inline(always)]
     fn run<S: Simd, const U: usize>(self, simd: S) {
         let PolicyWithRows { expansion, z, covariances } = self;
