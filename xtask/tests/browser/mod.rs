@@ -190,15 +190,24 @@ impl Page {
         self.call("Page.captureScreenshot", &json!({}))["data"].as_str().unwrap().to_owned()
     }
 
-    /// How light each visible pixel of the first element is that a selector names, 0 to 255, in ascending order. A screenshot of
-    /// the window is cut out: one of the element alone draws the whole page anew.
+    /// How light each pixel of the first element is that a selector names, 0 to 255, in ascending order. It is cut out of a screenshot
+    /// of the window, made as high as it needs: a screenshot of the element alone draws the whole page anew.
     pub(crate) fn shades(&mut self, selector: &str) -> Vec<u8> {
+        let sides = format!(
+            "(box => [box.left, box.top, box.right, box.bottom])(document.querySelector({selector:?}).getBoundingClientRect())"
+        );
+        let [width, height]: [u32; 2] = self.evaluate("[innerWidth, innerHeight]");
+        let [_, top, _, bottom]: [f64; 4] = self.evaluate(&sides);
+        let needed = (bottom - top).ceil() as u32;
+        if needed > height {
+            self.resize(width, needed);
+        }
         self.middle_of(selector);
-        let [left, top, right, bottom]: [f64; 4] = self.evaluate(&format!(
-            "(() => {{ const box = document.querySelector({selector:?}).getBoundingClientRect();
-                return [Math.max(box.left, 0), Math.max(box.top, 0),
-                    Math.min(box.right, innerWidth), Math.min(box.bottom, innerHeight)]; }})()"
-        ));
+        let [left, top, right, bottom]: [f64; 4] = self.evaluate(&sides);
+        let (seen_across, seen_down) = (-1.0..=f64::from(width) + 1.0, -1.0..=f64::from(needed.max(height)) + 1.0);
+        let whole = [left, right].iter().all(|x| seen_across.contains(x))
+            && [top, bottom].iter().all(|y| seen_down.contains(y));
+        assert!(whole, "{selector} is not seen whole: {:?}", [left, top, right, bottom]);
         let file = data_encoding::BASE64.decode(self.screenshot().as_bytes()).unwrap();
         let mut reader = png::Decoder::new(std::io::Cursor::new(file)).read_info().unwrap();
         let mut bytes = vec![0; reader.output_buffer_size().unwrap()];
@@ -211,6 +220,9 @@ impl Page {
         let mut shades: Vec<u8> =
             pixels.map(|pixel| (pixel[..3].iter().map(|&part| u16::from(part)).sum::<u16>() / 3) as u8).collect();
         shades.sort_unstable();
+        if needed > height {
+            self.resize(width, height);
+        }
         shades
     }
 

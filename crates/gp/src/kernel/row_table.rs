@@ -63,7 +63,7 @@ pub(crate) fn firsts<const U: usize>() -> impl Iterator<Item = usize> {
 pub(crate) trait OverRows {
     type Output;
 
-    /// Is inlined always, or it is compiled for the oldest machine.
+    /// Must be inlined always: what is called is compiled for the oldest machine.
     fn run<S: Simd, const U: usize>(self, simd: S) -> Self::Output;
 }
 

@@ -16,28 +16,30 @@ pub(crate) struct Serve {
 
 impl Serve {
     pub(crate) fn run(&self, _session: &Session) -> Result<Output, Failure> {
-        Err(self.refusal())
-    }
-
-    fn refusal(&self) -> Failure {
         let place = format!("policy-align serve {}", self.given.join(" "));
         let remedy = "cargo install --path crates/policy-align --features ros2";
-        Failure::usage("this program was built without ROS 2", place.trim_end(), remedy)
+        Err(Failure::usage("this program was built without ROS 2", place.trim_end(), remedy))
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use clap::{Args as _, Command, FromArgMatches as _};
+
     use super::Serve;
+    use crate::cli::failure::Exit;
+    use crate::cli::session::Session;
 
     #[test]
     fn a_build_without_ros_2_says_what_has_it() {
-        let given = ["toy.json", "--ros2", "--rate", "20"].map(str::to_string).to_vec();
+        let command = Serve::augment_args(Command::new("serve"));
+        let given = command.try_get_matches_from("serve toy.json --ros2 --rate 20".split(' ')).unwrap();
+        let failure = Serve::from_arg_matches(&given).unwrap().run(&Session::default()).unwrap_err();
         let lines = [
             "error: this program was built without ROS 2",
             "  in:  policy-align serve toy.json --ros2 --rate 20",
             "  try: cargo install --path crates/policy-align --features ros2",
         ];
-        assert_eq!(Serve { given }.refusal().to_string().lines().collect::<Vec<_>>(), lines);
+        assert_eq!((failure.exit, failure.to_string().lines().collect::<Vec<_>>()), (Exit::Usage, lines.to_vec()));
     }
 }

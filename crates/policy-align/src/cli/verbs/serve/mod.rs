@@ -1,7 +1,6 @@
 //! A policy as a node of ROS 2, in builds that have the feature `ros2`.
 
 #[cfg(any(test, not(feature = "ros2")))]
-#[cfg_attr(feature = "ros2", allow(dead_code, reason = "only its text is tested"))]
 mod absent;
 #[cfg(feature = "ros2")]
 mod messages;
