@@ -16,6 +16,19 @@ fn the_help_fits_a_terminal() {
     assert!(run("--help").out.contains("Command a robot of ROS 2 by a policy"));
 }
 
+#[cfg(not(feature = "ros2"))]
+#[test]
+fn a_build_without_ros_2_says_what_has_it() {
+    let ran = run("serve toy.json --ros2 --rate 20");
+    assert_eq!((ran.code, ran.out.as_str()), (Some(2), ""));
+    let lines = [
+        "error: this program was built without ROS 2",
+        "  in:  policy-align serve toy.json --ros2 --rate 20",
+        "  try: cargo install --path crates/policy-align --features ros2",
+    ];
+    assert_eq!(ran.err.lines().collect::<Vec<_>>(), lines);
+}
+
 #[cfg(feature = "ros2")]
 mod with_ros_2 {
     use std::time::Instant;
