@@ -48,9 +48,9 @@ fn nearest<'a>(wanted: &str, experiments: &'a [Experiment]) -> Option<&'a str> {
     alike.filter(|(alike, _)| *alike > LIKE).max_by(|(a, _), (b, _)| a.total_cmp(b)).map(|(_, name)| name)
 }
 
-/// Units of [`Setup::cost`] that a second of processor time does, over a whole run (330 s); a single experiment takes up
+/// Units of [`Setup::cost`] that a second of processor time does, over a whole run (520 s); a single experiment takes up
 /// to twice as long, or half.
-const COST_A_SECOND: f64 = 3.3e7;
+const COST_A_SECOND: f64 = 5e7;
 
 /// Every experiment and how long it takes, with its rows if they are asked for; last the time of all.
 pub(super) fn list(experiments: &[Experiment], with_rows: bool) -> String {

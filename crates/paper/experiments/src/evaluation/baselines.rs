@@ -55,8 +55,7 @@ impl Baselines {
 
     /// Work of one data set, in the unit of [`Setup::cost`](crate::Setup::cost).
     pub(crate) fn cost(&self) -> u64 {
-        // Measured: two fits of 1500 rows take about four seconds.
-        40 * (self.gaussians.max_rows as u64).pow(2)
+        Gaussians::cost(self.gaussians.max_rows)
     }
 
     /// In the order of the rows.

@@ -78,7 +78,7 @@ fn recipe() -> Recipe {
 /// The printed row.
 fn printed(scenario: HandInPlane, spread: f64, recipe: &Recipe) -> Setup {
     let protocol = recipe.protocol(PolicyAlign::default(), 22, spread);
-    Setup::new(ROW, BODY_SYSTEM, 20_000_000, vec![Row::of_learner(ROW)], BodyTrial { scenario, protocol })
+    Setup::new(ROW, BODY_SYSTEM, 85_000_000, vec![Row::of_learner(ROW)], BodyTrial { scenario, protocol })
 }
 
 /// Where its numbers come from.

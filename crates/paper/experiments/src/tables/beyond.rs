@@ -124,7 +124,8 @@ fn setup((number, case): (u32, Case)) -> Setup {
     let (gaussians, lwpr) = (case.gaussians(), case.lwpr());
     let Case { name, system, observation, max_rows } = case;
     let row = |method| Row { id: row_id(name, method), of: RowOf::Additional, tested_on: TESTED_ON };
-    let cost = 40 * (max_rows.min(39 * system.n_trajectories) as u64).pow(2);
+    let rows = max_rows.min(39 * system.n_trajectories);
+    let cost = Gaussians::cost(rows) * (20 + system.policy.dim() as u64) / 10;
     Setup::new(name, number, cost, WHO.map(row).into(), BeyondTrial { system, observation, lwpr, gaussians })
 }
 

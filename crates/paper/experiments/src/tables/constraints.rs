@@ -111,7 +111,7 @@ pub(crate) fn constraints() -> anyhow::Result<Experiment> {
 fn setup(number: u32, name: &str, generator: Generator, decibels: Option<f64>) -> Setup {
     let row = |method| Row { id: row_id(name, method), of: RowOf::Additional, tested_on: TESTED_ON };
     let trial = ConstraintsTrial { generator, decibels, lwpr: lwpr(), max_rows: MAX_ROWS };
-    Setup::new(name, number, 30_000_000, WHO.map(row).into(), trial)
+    Setup::new(name, number, 60_000_000, WHO.map(row).into(), trial)
 }
 
 /// LWPR as it comes but in two passes: of 5,000 samples ten are only slower.

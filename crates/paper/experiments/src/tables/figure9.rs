@@ -46,7 +46,7 @@ pub(crate) fn figure9() -> anyhow::Result<Experiment> {
                  these samples too. A data set with fewer than 10 of them has no value there.",
         decisions: "figure9.md",
         comparisons,
-        setups: vec![Setup::new("distances", ARM_SYSTEM, 1_500_000, rows, trial), of_baselines],
+        setups: vec![Setup::new("distances", ARM_SYSTEM, 2_600_000, rows, trial), of_baselines],
         ..Experiment::default()
     })
 }

@@ -94,7 +94,7 @@ fn setup((number, kind): (u32, Kind)) -> Setup {
     let row = |method| Row { id: row_id(name, method), of: RowOf::Additional, tested_on: TESTED_ON };
     let gaussians = Gaussians::new(ObservationModel::Velocities.front_end(), 400);
     let trial = ReadingTrial { system, held_out, gaussians };
-    Setup { data_sets, ..Setup::new(name, number, 8_000_000, METHODS.map(row).into(), trial) }
+    Setup { data_sets, ..Setup::new(name, number, 14_000_000, METHODS.map(row).into(), trial) }
 }
 
 #[derive(Serialize)]

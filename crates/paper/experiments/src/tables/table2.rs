@@ -93,7 +93,7 @@ impl Bench {
         // In the order of [`MEASURES`].
         protocol.candidates.push(Candidate::other(recipe.naive(6, naive_spread))?);
         let rows = CASES.into_iter().chain(["alignment"]).map(Row::of_learner).collect();
-        Ok(Setup::new("grasp", GRASP_SYSTEM, 2_000_000, rows, GraspTrial { grasp, protocol }))
+        Ok(Setup::new("grasp", GRASP_SYSTEM, 19_000_000, rows, GraspTrial { grasp, protocol }))
     }
 }
 

@@ -77,7 +77,7 @@ fn printed(arm: ThreeLinkArm, recipe: &Recipe) -> anyhow::Result<Setup> {
     // In the order of the rows.
     protocol.candidates.push(Candidate::other(recipe.naive(3, 1.0))?);
     let rows = rows.map(|(id, of)| Row { id: id.to_owned(), of, tested_on: TESTED_ON }).into();
-    Ok(Setup::new("three_link", ARM_SYSTEM, 2_000_000, rows, ArmTrial { arm, protocol }))
+    Ok(Setup::new("three_link", ARM_SYSTEM, 4_000_000, rows, ArmTrial { arm, protocol }))
 }
 
 /// Where its numbers come from.
