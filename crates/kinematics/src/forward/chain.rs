@@ -118,9 +118,9 @@ impl<const ROWS: usize> WithSimd for Fill<'_, ROWS> {
     type Output = Placement;
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) -> Placement {
+    fn with_simd<S: Simd>(self, simd: S) -> Placement {
         let Fill { chain: Chain { nodes, couplings, .. }, q, workspace, columns } = self;
-        let placements = workspace.place_inline(nodes, couplings, q);
+        let placements = workspace.place_inline(simd, nodes, couplings, q);
         let end = placements[nodes.len() - 1];
         columns.as_flattened_mut().fill(0.0);
         for (node, placement) in nodes.iter().zip(placements) {

@@ -37,11 +37,16 @@ pub(crate) struct Position<T> {
 }
 
 impl<T: Number> Position<T> {
+    /// The same in every lane.
+    #[inline(always)]
+    pub(crate) fn of(token: T::Token, value: f64, sine: f64, cosine: f64) -> Self {
+        Position { value: T::splat(token, value), sine: T::splat(token, sine), cosine: T::splat(token, cosine) }
+    }
+
     /// A joint at zero.
     #[inline(always)]
     pub(crate) fn zero(token: T::Token) -> Self {
-        let zero = T::splat(token, 0.0);
-        Position { value: zero, sine: zero, cosine: T::splat(token, 1.0) }
+        Self::of(token, 0.0, 0.0, 1.0)
     }
 }
 

@@ -91,10 +91,35 @@ impl Placement {
         Point3::new(x, y, z)
     }
 
+    /// Each vector in a register, where a register holds four numbers.
+    #[inline(always)]
+    pub(crate) fn in_registers<S: Simd>(&self, simd: S) -> Placement<Register<S>, 1> {
+        let zero = [Register::splat(simd, 0.0)];
+        let mut placement = Placement { axes: [zero; 3], origin: zero };
+        for column in 0..3 {
+            placement.axes[column][0] = Register::of(simd, Register::<S>::elements(&self.axes[column])[0]);
+        }
+        placement.origin[0] = Register::of(simd, Register::<S>::elements(&self.origin)[0]);
+        placement
+    }
+
     pub(crate) fn isometry(&self) -> IsometryMatrix3<f64> {
         let [x, y, z] = self.axes.map(|axis| Vector3::new(axis[0], axis[1], axis[2]));
         let rotation = Rotation3::from_matrix_unchecked(Matrix3::from_columns(&[x, y, z]));
         IsometryMatrix3::from_parts(Translation3::from(self.position()), rotation)
+    }
+}
+
+impl<S: Simd> Placement<Register<S>, 1> {
+    /// Puts [`Placement::in_registers`] back.
+    #[inline(always)]
+    pub(crate) fn in_memory(self) -> Placement {
+        let mut placement = Placement::IDENTITY;
+        for column in 0..3 {
+            Register::<S>::elements_mut(&mut placement.axes[column])[0] = self.axes[column][0].raw();
+        }
+        Register::<S>::elements_mut(&mut placement.origin)[0] = self.origin[0].raw();
+        placement
     }
 }
 
