@@ -41,7 +41,7 @@
 //!
 //! # Equations
 //!
-//! Comments cite (S1)–(S46) and (R1)–(R9). [`equations`] defines them and lists the steps of the search; it is
+//! Comments cite (S1)–(S47) and (R1)–(R9). [`equations`] defines them and lists the steps of the search; it is
 //! `docs/slope-gp.md` of the repository. `docs/which-learner.md` compares the learners, `docs/decisions/gp.md` gives
 //! the reasons.
 //!

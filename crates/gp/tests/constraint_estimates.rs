@@ -139,6 +139,34 @@ fn constraints_of_a_known_policy_are_found() {
     }
 }
 
+/// Slopes of smoothed positions have errors that hardly change from sample to sample: they are no constraints that move.
+#[test]
+fn errors_that_samples_share_are_no_constraints() {
+    let (samples, step, error) = (40, 0.05, 0.03 * ANGLES.rms());
+    let mut rng = ChaCha8Rng::seed_from_u64(3);
+    let (mut states, mut velocities, mut indices) = (vec![], vec![], vec![]);
+    for trajectory in 0..30 {
+        let mut x = DVector::from_fn(ANGLES.dim, |_, _| rng.random_range(-1.5..1.5));
+        let parts: Vec<DVector<f64>> =
+            (0..5).map(|_| DVector::from_fn(ANGLES.dim, |_, _| error * rng.random_range(-1.7..1.7))).collect();
+        for sample in 0..samples {
+            let time = 2.0 * sample as f64 / samples as f64 - 1.0;
+            let policy = ANGLES.policy(&x);
+            let shared = (0..).zip(&parts).map(|(power, part)| part * time.powi(power)).sum::<DVector<f64>>();
+            velocities.push(&policy + shared);
+            indices.push(SampleIndex { trajectory, sample });
+            states.push(x.clone());
+            x += policy * step;
+        }
+    }
+    let variances = vec![error.powi(2) * (1.0 + 1.0 / 3.0 + 1.0 / 5.0 + 1.0 / 7.0 + 1.0 / 9.0); velocities.len()];
+    let rows = Rows::new(DMatrix::from_columns(&states), DMatrix::from_columns(&velocities), indices).unwrap();
+    let estimates = estimated(&rows.with_variances(variances).unwrap(), &known(&ANGLES));
+    let constraints: Vec<&StretchEstimate> =
+        estimates.stretches.iter().filter(|stretch| stretch.acting == Acting::Constraint).collect();
+    assert!(constraints.is_empty(), "{constraints:?}");
+}
+
 /// Free movement has no constraint, a turn of the coordinates turns the rows, and a Jacobian of 1 changes nothing.
 #[test]
 fn free_turned_and_the_same() {

@@ -1,9 +1,11 @@
 //! The constraints of movements, once the policy is known: (S26) to (S29).
 //!
-//! Where u = Nπ + A⁺b, the disagreement π̂ − u lies in the span of Aᵀ, and the velocity along the rows of A stays constant while
-//! A and b do. Both together tell the rows of A: a velocity that does not vary may never have been wanted, and what the policy
+//! Where u = Nπ + A⁺b, the disagreement π̂ − u lies in the span of Aᵀ, and the velocity along the rows of A stays constant, or 0,
+//! while A and b do. Both together tell the rows of A: a velocity that does not vary may never have been wanted, and what the policy
 //! wants in vain may be its error.
 
+mod noise;
+mod parts;
 mod spaces;
 mod stretch_estimate;
 mod stretch_kind;
@@ -18,12 +20,12 @@ use rayon::prelude::*;
 
 use crate::rows::task_space::TaskSpace;
 use crate::stretches::cut::MOST_SAMPLES;
-use crate::stretches::noise::velocity_noise;
-use crate::stretches::partition::{Part, SPARE, cheapest_parts, known_part};
+use crate::stretches::partition::{Part, cheapest_parts, known_part};
 use crate::stretches::segmentation::PARAMETER;
 use crate::stretches::{MOST_DIMENSIONS, centred, evenly, parts};
 use crate::{GpError, Rows};
-use spaces::rarity;
+use noise::noise;
+use parts::{Parts, rarity_of};
 use stretch_estimate::canonical;
 use stretch_kind::{Movement, StretchKind};
 use view::{Disagreement, SHARED, View};
@@ -73,13 +75,17 @@ impl ConstraintEstimates {
         };
         let wanted = Wanted::of(rows, policy);
         let rarity = vec![0.0; spaces.len()];
-        let mut search = Search { rows, movements, spaces, bases, noise, wanted, rarity };
+        let mut search = Search { rows, movements, spaces, bases, noise, wanted, rarity, still: false };
         let first = FIRST.powi(2) * search.wanted.mean_square();
         let policy_variance = search.left(&search.parts(first)).unwrap_or(first);
-        let mut parts = search.parts(policy_variance);
-        if spaces.len() > 1 {
-            search.rarity = rarity_of(&parts, spaces.len());
-            parts = search.parts(policy_variance);
+        let pushing = search.parts_in_likely_spaces(policy_variance);
+        let cost = search.cost(&pushing);
+        // Noise lets constraints move that do not: all of them do, or none.
+        let rarity = std::mem::replace(&mut search.rarity, vec![0.0; spaces.len()]);
+        search.still = true;
+        let mut parts = search.parts_in_likely_spaces(policy_variance);
+        if search.cost(&parts) > cost {
+            (search.rarity, search.still, parts) = (rarity, false, pushing);
         }
         let stretches = search.stretches(&parts, policy_variance);
         Ok(ConstraintEstimates { stretches, noise, policy_variance })
@@ -91,27 +97,6 @@ fn basis(space: &TaskSpace, dim: usize) -> Option<DMatrix<f64>> {
     space.moved(dim).map(|(basis, _)| basis).filter(|basis| basis.ncols() <= MOST_DIMENSIONS)
 }
 
-/// The least of the upper bounds (S20) in all spaces.
-fn noise(rows: &Rows, movements: &[&[usize]], spaces: &[TaskSpace]) -> Option<f64> {
-    let in_space = |space: &TaskSpace| {
-        let (basis, gain) = space.moved(rows.dim())?;
-        let jacobians = space.jacobians.as_ref()?;
-        let columns = jacobians.iter().zip(rows.velocities().column_iter());
-        let velocities: Vec<DVector<f64>> = columns.map(|(j, u)| basis.tr_mul(&(j * u)) / gain.sqrt()).collect();
-        velocity_noise(&DMatrix::from_columns(&velocities), rows.variances(), movements)
-    };
-    let recorded = velocity_noise(rows.velocities(), rows.variances(), movements);
-    recorded.into_iter().chain(spaces.iter().filter_map(in_space)).reduce(f64::min)
-}
-
-/// Parts of a movement, or of what lies between two known switches: the rows searched, and what was found, begin and end counted
-/// among them.
-struct Parts {
-    rows: Vec<usize>,
-    movement: Movement,
-    found: Vec<Part<StretchKind>>,
-}
-
 struct Search<'a> {
     rows: &'a Rows,
     movements: Vec<&'a [usize]>,
@@ -121,9 +106,33 @@ struct Search<'a> {
     wanted: Wanted<'a>,
     /// Of (S38).
     rarity: Vec<f64>,
+    /// Whether b = 0 in all stretches.
+    still: bool,
 }
 
 impl Search<'_> {
+    /// [`Search::parts`], once it is known in which spaces most constraints are.
+    fn parts_in_likely_spaces(&mut self, least: f64) -> Vec<Parts> {
+        let parts = self.parts(least);
+        if self.spaces.len() == 1 {
+            return parts;
+        }
+        self.rarity = rarity_of(&parts, self.spaces.len());
+        drop(parts);
+        self.parts(least)
+    }
+
+    /// (S28) and (S38) of all movements.
+    fn cost(&self, parts: &[Parts]) -> f64 {
+        let alone = PARAMETER * self.rows.dim() as f64;
+        let of = |parts: &Parts| {
+            let within: usize = parts.found.iter().map(|part| part.end - part.begin).sum();
+            let costs = parts.found.iter().map(|part| parts.movement.cheapest(part.begin, part.end).0.0);
+            costs.sum::<f64>() + alone * (parts.rows.len() - within) as f64
+        };
+        parts.iter().map(of).sum()
+    }
+
     /// Of every movement, or every part between known switches; `least` is the least variance of the policy.
     fn parts(&self, least: f64) -> Vec<Parts> {
         let of = |movement: &&[usize]| {
@@ -162,7 +171,7 @@ impl Search<'_> {
         let weights = self.wanted.variances(rows).into_iter().map(weight).collect();
         let disagreement = Disagreement::new(disagreement, weights, self.noise);
         let view = |(space, basis): (&TaskSpace, &Option<DMatrix<f64>>)| {
-            basis.as_ref().map(|basis| View::of(space, basis, rows, &velocities, &disagreement))
+            basis.as_ref().map(|basis| View::of(space, basis, rows, &velocities, &disagreement, self.still))
         };
         let views = self.spaces.iter().zip(&self.bases).map(view).collect();
         Movement { disagreement, views, rarity: self.rarity.clone() }
@@ -234,8 +243,9 @@ impl Search<'_> {
 
     /// Directions (n, r) other than the rows of A (k, n) along which velocities do not vary.
     fn hidden(&self, matrix: &DMatrix<f64>, rows: &[usize]) -> DMatrix<f64> {
-        let (_, centred) = centred(&self.rows.velocities().select_columns(rows));
-        let scatter = &centred * centred.transpose() / self.noise;
+        let velocities = self.rows.velocities().select_columns(rows);
+        let varying = if self.still { velocities } else { centred(&velocities).1 };
+        let scatter = &varying * varying.transpose() / self.noise;
         let varies = VARIES * (scatter.trace() + rows.len() as f64);
         let eigen = (scatter + matrix.tr_mul(matrix) * varies).symmetric_eigen();
         let least = 2.0 * rows.len() as f64 + SEEN;
@@ -265,30 +275,8 @@ impl Search<'_> {
             gain += through.norm_squared();
             sum += through * velocity;
         }
-        stretch.bound = sum / count;
+        stretch.bound = if self.still { DVector::zeros(rank) } else { sum / count };
         stretch.bound_deviation = (self.noise * gain / rank as f64).sqrt() / count;
         stretch.speed = (square / count).sqrt();
-    }
-}
-
-/// What a constraint in each space costs by the parts that have one.
-fn rarity_of(parts: &[Parts], spaces: usize) -> Vec<f64> {
-    let constrained = |part: &&Part<StretchKind>| part.kind != StretchKind::Free;
-    let of = |of: &Parts| -> Vec<Vec<f64>> {
-        of.found.iter().filter(constrained).map(|part| of.movement.costs_in_spaces(part)).collect()
-    };
-    rarity(&parts.par_iter().flat_map_iter(of).collect::<Vec<_>>(), spaces)
-}
-
-impl Parts {
-    /// The parts found, and what lies between them if it is long enough to say that it is in none; whether it was found.
-    fn with_gaps(&self) -> Vec<(Part<StretchKind>, bool)> {
-        let ends = self.found.iter().map(|part| part.end);
-        let begins = self.found.iter().map(|part| part.begin).chain([self.rows.len()]);
-        let gaps = std::iter::once(0).chain(ends).zip(begins).filter(|(end, begin)| end + SPARE <= *begin);
-        let gaps = gaps.map(|(begin, end)| (Part { begin, end, kind: StretchKind::Free }, false));
-        let mut all: Vec<_> = self.found.iter().map(|&part| (part, true)).chain(gaps).collect();
-        all.sort_by_key(|(part, _)| part.begin);
-        all
     }
 }

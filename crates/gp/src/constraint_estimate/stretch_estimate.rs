@@ -33,7 +33,7 @@ pub struct StretchEstimate {
     pub space: usize,
     /// A, (k, m): orthonormal rows, the largest entry of each positive. No rows unless it is a constraint.
     pub matrix: DMatrix<f64>,
-    /// b, (k): mean velocity along each row, in units of the space per second.
+    /// b, (k): mean velocity along each row, in units of the space per second; 0 if no constraint of the recording moves.
     pub bound: DVector<f64>,
     /// Standard deviation of every component of b.
     pub bound_deviation: f64,

@@ -68,7 +68,7 @@ impl Movement {
                 continue;
             }
             let change = view.change((begin, end), directions, rank, &self.disagreement);
-            let cost = none + change + self.price((begin, end), dim, rank) + SEGMENT;
+            let cost = none + change + self.price((begin, end), dim, rank, view.still) + SEGMENT;
             if best.is_none_or(|(least, _)| cost < least) {
                 best = Some((cost, rank));
             }
@@ -86,10 +86,10 @@ impl Movement {
         self.views.iter().map(|view| view.as_ref().and_then(of).unwrap_or(f64::INFINITY)).collect()
     }
 
-    /// What A of so many rows and b cost: less where velocities are known better than the policy, since one that does not vary is
-    /// then no accident.
-    fn price(&self, (begin, end): (usize, usize), dim: usize, rank: usize) -> f64 {
-        let parameters = PARAMETER * (rank * (dim - rank + 1)) as f64;
+    /// What A of so many rows and b cost, or A alone: less where velocities are known better than the policy, since one that does not
+    /// vary is then no accident.
+    fn price(&self, (begin, end): (usize, usize), dim: usize, rank: usize, still: bool) -> f64 {
+        let parameters = PARAMETER * (rank * (dim - rank + usize::from(!still))) as f64;
         let accident = self.disagreement.accident(begin, end);
         rank as f64 * (parameters / rank as f64 + DIMENSION - accident).max(ROW)
     }
@@ -140,7 +140,9 @@ impl Costs for MovementCosts<'_> {
             return 0.0;
         }
         let dim = self.movement.disagreement.of.nrows();
-        let of = |rank| self.left.at_least(begin, rank - 1) + self.movement.price((begin, end), dim, rank) + SEGMENT;
+        let still = self.movement.views.iter().flatten().any(|view| view.still);
+        let of =
+            |rank| self.left.at_least(begin, rank - 1) + self.movement.price((begin, end), dim, rank, still) + SEGMENT;
         let possible = (1..=dim).filter(|rank| end - begin + rank >= dim + SPARE);
         possible.map(of).fold(self.movement.disagreement.square(begin, end) + SEGMENT, f64::min)
     }

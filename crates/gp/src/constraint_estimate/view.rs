@@ -59,6 +59,8 @@ pub(super) struct View {
     disagreements: DMatrix<f64>,
     /// JJᵀ of each sample, (m, m); none if it is I.
     grams: Option<Vec<DMatrix<f64>>>,
+    /// Whether b = 0.
+    pub(super) still: bool,
     scatters: PrefixSums,
     /// Over the first samples.
     sums: Vec<Sums>,
@@ -103,9 +105,12 @@ impl View {
         rows: &[usize],
         velocities: &DMatrix<f64>,
         disagreement: &Disagreement,
+        still: bool,
     ) -> View {
         match &space.jacobians {
-            None => View::summed(basis.clone(), velocities.clone(), disagreement.of.clone(), None, disagreement),
+            None => {
+                View::summed(basis.clone(), (velocities.clone(), disagreement.of.clone()), None, disagreement, still)
+            }
             Some(jacobians) => {
                 let own: Vec<DMatrix<f64>> = rows.iter().map(|&row| basis.tr_mul(&jacobians[row])).collect();
                 let through = |of: &DMatrix<f64>| {
@@ -115,17 +120,17 @@ impl View {
                 };
                 let grams = own.iter().map(|j| j * j.transpose()).collect();
                 let (velocities, disagreements) = (through(velocities), through(&disagreement.of));
-                View::summed(basis.clone(), velocities, disagreements, Some(grams), disagreement)
+                View::summed(basis.clone(), (velocities, disagreements), Some(grams), disagreement, still)
             }
         }
     }
 
     fn summed(
         basis: DMatrix<f64>,
-        velocities: DMatrix<f64>,
-        disagreements: DMatrix<f64>,
+        (velocities, disagreements): (DMatrix<f64>, DMatrix<f64>),
         grams: Option<Vec<DMatrix<f64>>>,
         disagreement: &Disagreement,
+        still: bool,
     ) -> View {
         let m = basis.ncols();
         let zero = DMatrix::zeros(m, m);
@@ -142,7 +147,8 @@ impl View {
             gain += gram.map_or(1.0, |gram| gram.trace() / m as f64);
             sums.push(Sums { multipliers, gain, noise });
         }
-        View { basis, scatters: PrefixSums::of(&velocities), velocities, disagreements, grams, sums }
+        let scatters = if still { PrefixSums::about_zero(&velocities) } else { PrefixSums::of(&velocities) };
+        View { basis, still, scatters, velocities, disagreements, grams, sums }
     }
 
     /// Whether v = u: what [`View::change`] adds to [`Disagreement::square`] is then the least of a sum of squares.
@@ -150,13 +156,13 @@ impl View {
         self.grams.is_none()
     }
 
-    /// Σ |v − mean v|² of all samples.
+    /// Σ |v − mean v|² of all samples, or Σ |v|².
     pub(super) fn variation(&self) -> f64 {
         self.scatters.total()
     }
 
     /// Eigenvectors of C/gs² − gY (S26) over `begin..end`, the least eigenvalue first: a row of A has a velocity that does not
-    /// vary, and takes away much of what the policy wants.
+    /// vary, or none, and takes away much of what the policy wants.
     pub(super) fn directions(&self, begin: usize, end: usize, noise: f64) -> Directions {
         let (from, to) = (&self.sums[begin], &self.sums[end]);
         let count = (end - begin) as f64;
@@ -164,7 +170,8 @@ impl View {
         let mut matrix =
             self.scatters.scatter(begin, end) / (gain * noise) - (&to.multipliers - &from.multipliers) * gain;
         if self.grams.is_some() {
-            matrix -= (&to.noise.0 - &from.noise.0) * ((count - 1.0) / (count * gain));
+            let freedom = if self.still { count } else { count - 1.0 };
+            matrix -= (&to.noise.0 - &from.noise.0) * (freedom / (count * gain));
             matrix += (&to.noise.1 - &from.noise.1) * gain;
         }
         let eigen = matrix.symmetric_eigen();
@@ -189,7 +196,7 @@ impl View {
         let rows = &directions.first(rank);
         let along = |of: &DMatrix<f64>| rows.tr_mul(&of.columns(begin, end - begin));
         let (velocities, wanted) = (along(&self.velocities), along(&self.disagreements));
-        let mean = velocities.column_mean();
+        let mean = if self.still { DVector::zeros(rank) } else { velocities.column_mean() };
         let of_sample = |at: usize| {
             let gram = rows.tr_mul(&(&grams[begin + at] * rows));
             let Some(inverse) = gram.try_inverse() else { return 0.0 };

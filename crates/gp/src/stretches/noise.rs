@@ -24,14 +24,8 @@ pub(crate) fn velocity_noise(
     variances: Option<&[f64]>,
     movements: &[&[usize]],
 ) -> Option<f64> {
+    let from_differences = noise_of_differences(velocities, movements)?;
     let dim = velocities.nrows();
-    let velocity = |row: usize| velocities.column(row);
-    let third =
-        |at: &[usize]| (velocity(at[3]) - velocity(at[0]) + 3.0 * (velocity(at[1]) - velocity(at[2]))).norm_squared();
-    let thirds: Vec<f64> = movements.iter().flat_map(|movement| movement.windows(4).map(third)).collect();
-    // The median of χ² with n degrees of freedom is about n (1 − 2/9n)³.
-    let median_of_chi_squared = dim as f64 * (1.0 - 2.0 / (9.0 * dim as f64)).powi(3);
-    let from_differences = upper_median(thirds)? / (THIRD_DIFFERENCE * median_of_chi_squared);
     let extent = |at: &[usize]| least_extent(&velocities.select_columns(at));
     let windows = movements.iter().flat_map(|movement| movement.chunks_exact(dim + WINDOW).map(extent));
     let mut extents: Vec<f64> = windows.collect();
@@ -40,6 +34,18 @@ pub(crate) fn velocity_noise(
     let mean_square = velocities.norm_squared() / velocities.ncols() as f64;
     let known = variances.and_then(|variances| upper_median(variances.to_vec())).unwrap_or(0.0);
     Some(from_differences.min(TIMES * from_windows).max(ROUNDING * mean_square).max(known))
+}
+
+/// The variance of a velocity along an axis by third differences, an upper bound; none without three samples next to each other.
+pub(crate) fn noise_of_differences(velocities: &DMatrix<f64>, movements: &[&[usize]]) -> Option<f64> {
+    let dim = velocities.nrows();
+    let velocity = |row: usize| velocities.column(row);
+    let third =
+        |at: &[usize]| (velocity(at[3]) - velocity(at[0]) + 3.0 * (velocity(at[1]) - velocity(at[2]))).norm_squared();
+    let thirds: Vec<f64> = movements.iter().flat_map(|movement| movement.windows(4).map(third)).collect();
+    // The median of χ² with n degrees of freedom is about n (1 − 2/9n)³.
+    let median_of_chi_squared = dim as f64 * (1.0 - 2.0 / (9.0 * dim as f64)).powi(3);
+    Some(upper_median(thirds)? / (THIRD_DIFFERENCE * median_of_chi_squared))
 }
 
 /// The least eigenvalue of the centred scatter, per degree of freedom.

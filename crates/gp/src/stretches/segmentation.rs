@@ -85,7 +85,8 @@ impl Costs for PlaneCosts {
 #[derive(Debug, Clone)]
 pub(crate) struct PrefixSums {
     dim: usize,
-    first: Vec<DVector<f64>>,
+    /// None where scatters are about 0.
+    first: Option<Vec<DVector<f64>>>,
     second: Vec<DMatrix<f64>>,
 }
 
@@ -99,19 +100,31 @@ impl PrefixSums {
             second.push(&second[at] + &centred * centred.transpose());
             first.push(&first[at] + centred);
         }
-        PrefixSums { dim, first, second }
+        PrefixSums { dim, first: Some(first), second }
     }
 
-    /// Σ |u − mean u|² of all samples.
+    /// Of scatters about 0 instead of the mean.
+    pub(crate) fn about_zero(velocities: &DMatrix<f64>) -> Self {
+        let dim = velocities.nrows();
+        let mut second = vec![DMatrix::zeros(dim, dim)];
+        for (at, velocity) in velocities.column_iter().enumerate() {
+            second.push(&second[at] + velocity * velocity.transpose());
+        }
+        PrefixSums { dim, first: None, second }
+    }
+
+    /// Σ |u − mean u|² of all samples, or Σ |u|².
     pub(crate) fn total(&self) -> f64 {
         self.second.last().map_or(0.0, DMatrix::trace)
     }
 
-    /// Σ (u − ū)(u − ū)ᵀ over `begin..end`.
+    /// Σ (u − ū)(u − ū)ᵀ over `begin..end`, or Σ uuᵀ.
     pub(crate) fn scatter(&self, begin: usize, end: usize) -> DMatrix<f64> {
-        let sum = &self.first[end] - &self.first[begin];
         let mut scatter = &self.second[end] - &self.second[begin];
-        scatter.ger(-1.0 / (end - begin) as f64, &sum, &sum, 1.0);
+        if let Some(first) = &self.first {
+            let sum = &first[end] - &first[begin];
+            scatter.ger(-1.0 / (end - begin) as f64, &sum, &sum, 1.0);
+        }
         scatter
     }
 }

@@ -1,0 +1,37 @@
+//! The parts that a movement was found to have.
+
+use rayon::prelude::*;
+
+use super::spaces::rarity;
+use super::stretch_kind::{Movement, StretchKind};
+use crate::stretches::partition::{Part, SPARE};
+
+/// Parts of a movement, or of what lies between two known switches: the rows searched, and what was found, begin and end counted
+/// among them.
+pub(super) struct Parts {
+    pub(super) rows: Vec<usize>,
+    pub(super) movement: Movement,
+    pub(super) found: Vec<Part<StretchKind>>,
+}
+
+/// What a constraint in each space costs by the parts that have one.
+pub(super) fn rarity_of(parts: &[Parts], spaces: usize) -> Vec<f64> {
+    let constrained = |part: &&Part<StretchKind>| part.kind != StretchKind::Free;
+    let of = |of: &Parts| -> Vec<Vec<f64>> {
+        of.found.iter().filter(constrained).map(|part| of.movement.costs_in_spaces(part)).collect()
+    };
+    rarity(&parts.par_iter().flat_map_iter(of).collect::<Vec<_>>(), spaces)
+}
+
+impl Parts {
+    /// The parts found, and what lies between them if it is long enough to say that it is in none; whether it was found.
+    pub(super) fn with_gaps(&self) -> Vec<(Part<StretchKind>, bool)> {
+        let ends = self.found.iter().map(|part| part.end);
+        let begins = self.found.iter().map(|part| part.begin).chain([self.rows.len()]);
+        let gaps = std::iter::once(0).chain(ends).zip(begins).filter(|(end, begin)| end + SPARE <= *begin);
+        let gaps = gaps.map(|(begin, end)| (Part { begin, end, kind: StretchKind::Free }, false));
+        let mut all: Vec<_> = self.found.iter().map(|&part| (part, true)).chain(gaps).collect();
+        all.sort_by_key(|(part, _)| part.begin);
+        all
+    }
+}
