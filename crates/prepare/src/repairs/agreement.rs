@@ -3,7 +3,9 @@
 pub(crate) enum Agreement {
     /// There are none, or they are unusable.
     None,
-    /// Differences of the positions, without further information.
+    /// The steps after each position, without further information: exact where a movement was calculated by such steps.
+    Steps,
+    /// Other differences of the positions, which tell less than these.
     Differences,
     /// Measured independently, and consistent with the steps.
     Own,

@@ -78,14 +78,14 @@ pub(crate) fn decide(
         return Agreement::None;
     }
     if fit.factors.iter().all(|factor| (1.0 / AGREE..AGREE).contains(factor)) {
-        let differences = made_of_positions(episodes);
-        let why = if differences {
-            "recorded; they are differences of the positions"
-        } else {
-            "recorded; they agree with the steps"
+        let made = made_of_positions(episodes);
+        let (value, why) = match made {
+            Some(Agreement::Differences) => ("from positions", "those recorded are differences of them"),
+            Some(_) => ("recorded", "recorded; they are differences of the positions"),
+            None => ("recorded", "recorded; they agree with the steps"),
         };
-        notes.decided("velocities", "recorded", why, "--integration");
-        return if differences { Agreement::Differences } else { Agreement::Own };
+        notes.decided("velocities", value, why, "--integration");
+        return made.unwrap_or(Agreement::Own);
     }
     rescale(episodes, &fit, channels, notes);
     Agreement::Own
@@ -148,8 +148,8 @@ fn parts(episode: &Episode) -> Vec<Part> {
         .collect()
 }
 
-/// Whether each velocity is the step after it, the step before it, or the mean of both.
-fn made_of_positions(episodes: &[Episode]) -> bool {
+/// What velocities are that are made of the positions: each the step after it, or the step before it or the mean of both.
+fn made_of_positions(episodes: &[Episode]) -> Option<Agreement> {
     let off = |of: &dyn Fn(&Episode, usize) -> DVector<f64>| {
         let (mut left, mut power) = (0.0, 0.0);
         for episode in episodes {
@@ -166,7 +166,10 @@ fn made_of_positions(episodes: &[Episode]) -> bool {
     let both = |episode: &Episode, i: usize| {
         (episode.step(i) + episode.step(i - 1)) / (episode.times.seconds(i, i + 1) + episode.times.seconds(i - 1, i))
     };
-    off(&after) || off(&before) || off(&both)
+    if off(&after) {
+        return Some(Agreement::Steps);
+    }
+    (off(&before) || off(&both)).then_some(Agreement::Differences)
 }
 
 /// Converts velocities in other units than the steps to those of positions and stamps, and reports it.

@@ -117,7 +117,7 @@ pub(crate) fn velocity_variance(demonstrations: &Demonstrations, noise: &Noise) 
 
 /// The kind of recording where the user requested a smoothing.
 pub(crate) fn as_requested(demonstrations: &Demonstrations, agreement: Agreement) -> VelocitySource {
-    if agreement == Agreement::None {
+    if matches!(agreement, Agreement::None | Agreement::Differences) {
         return VelocitySource::PositionsAsRequested;
     }
     if agreement == Agreement::Own { of_recorded(demonstrations) } else { VelocitySource::Recorded }
@@ -146,8 +146,8 @@ pub(crate) fn decide(
     };
     let of_velocities = noise.velocity_share.unwrap_or(0.0);
     let recorded = match agreement {
-        Agreement::None => VelocitySource::Positions,
-        Agreement::Differences if share > EXACT => VelocitySource::Positions,
+        Agreement::None | Agreement::Differences => VelocitySource::Positions,
+        Agreement::Steps if share > EXACT => VelocitySource::Positions,
         _ if of_velocities > USELESS_VELOCITIES => VelocitySource::Positions,
         _ if share > EXACT && noise.velocities_correct_positions() => VelocitySource::Fused,
         _ => of_recorded(demonstrations),
