@@ -6,13 +6,16 @@ use crate::{Fault, Nan, ReadError};
 /// At most this many samples in a row are interpolated.
 const LONGEST_FILL: usize = 3;
 
+const REFUSED: &str = "--nan drop (leaves the sample out) or --nan fill (interpolates gaps of up to 3 samples)";
+const UNFILLED: &str = "--nan drop (leaves the sample out); --nan fill interpolates at most 3 in a row, neither stamps nor the ends of an episode";
+
 /// Returns how many samples were not finite.
 pub(super) fn make_finite(draft: &mut RawEpisode, names: &[String], word: &str, nan: Nan) -> Result<usize, ReadError> {
     let n = names.len();
     let bad: Vec<usize> = (0..draft.len()).filter(|&sample| !is_finite(draft, sample, n)).collect();
     let (Some(&first), count) = (bad.first(), bad.len()) else { return Ok(0) };
     match nan {
-        Nan::Refuse => Err(not_finite(draft, first, names, word)),
+        Nan::Refuse => Err(not_finite(draft, (first, names, word), REFUSED)),
         Nan::Drop => {
             let mut bad = bad.into_iter().peekable();
             let finite: Vec<usize> = (0..draft.len()).filter(|sample| bad.next_if_eq(sample).is_none()).collect();
@@ -23,7 +26,7 @@ pub(super) fn make_finite(draft: &mut RawEpisode, names: &[String], word: &str, 
             let (before, after) = (run[0].wrapping_sub(1), run[run.len() - 1] + 1);
             let fits = run[0] > 0 && after < draft.len() && run.len() <= LONGEST_FILL;
             if !fits || run.iter().any(|&sample| !draft.times[sample].is_finite()) {
-                return Err(not_finite(draft, run[0], names, word));
+                return Err(not_finite(draft, (run[0], names, word), UNFILLED));
             }
             interpolate(draft, run, before, after, n);
             Ok(())
@@ -40,7 +43,7 @@ fn is_finite(draft: &RawEpisode, sample: usize, n: usize) -> bool {
 }
 
 /// What of a sample is missing.
-fn not_finite(draft: &RawEpisode, sample: usize, names: &[String], word: &str) -> ReadError {
+fn not_finite(draft: &RawEpisode, (sample, names, word): (usize, &[String], &str), remedy: &str) -> ReadError {
     let n = names.len();
     let here = |numbers: &[f64]| {
         let values = numbers.get(sample * n..(sample + 1) * n)?;
@@ -55,7 +58,6 @@ fn not_finite(draft: &RawEpisode, sample: usize, names: &[String], word: &str) -
         (format!("the velocity of '{}'", names[channel]), value)
     };
     let found = if value.is_nan() { "missing or NaN".to_owned() } else { format!("{value}") };
-    let remedy = "--nan drop (leaves the sample out) or --nan fill (interpolates gaps of up to 3 samples)";
     ReadError::NotFinite(Fault::new(
         format!("{what} is not a finite number: {found}"),
         draft.place(sample, word),

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use demo_io::Piece;
 use motion::{Finding, Recordings};
 use policy_align::{
-    ConstraintStretch, ContextUse, FileSummary, Model, Prepared, TaskLinks, estimate_constraints, prepare,
+    ConstraintStretch, ContextUse, FileSummary, Model, Prepared, StateChannel, TaskLinks, estimate_constraints, prepare,
 };
 
 use crate::cli::failure::{Exit, Failure, displayed};
@@ -79,7 +79,26 @@ pub(crate) fn prepared_for(
         let remedy = format!("--state {}", value_word(&expected.join(",")));
         return Err(Failure::usage(what, named(files), remedy));
     }
+    if let Some(doubt) = other_units(model, &prepared) {
+        session.warn(&format!("{}: {doubt}", named(files)));
+    }
     Ok((reading, prepared))
+}
+
+/// Channels that vary so many times as much as in the recordings of the model have another unit.
+const OTHER_UNIT: f64 = 10.0;
+
+/// Says which channels seem to have other units than the model's.
+fn other_units(model: &Model, prepared: &Prepared) -> Option<String> {
+    let width = |channel: &StateChannel| channel.high - channel.low;
+    let pairs = prepared.state.iter().zip(&model.state);
+    let odd: Vec<&str> = pairs
+        .filter(|(here, learnt)| width(learnt) > 0.0 && width(here) > OTHER_UNIT * width(learnt))
+        .map(|(_, learnt)| learnt.name.as_str())
+        .collect();
+    let names = odd.join(",");
+    let what = format!("{}: over {OTHER_UNIT} times the range that the model learnt from", odd.join(", "));
+    (!odd.is_empty()).then(|| format!("{what}; other units? --degrees {} if these are degrees", value_word(&names)))
 }
 
 /// The constraints that acted on prepared recordings of `files`.

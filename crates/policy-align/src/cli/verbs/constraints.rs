@@ -69,19 +69,23 @@ impl Constraints {
         let links = self.links(session, &model)?;
         let found = acted(&model, &prepared, links.as_ref(), &self.files)?;
         let found = self.chosen(found, &prepared)?;
+        let mut repeated = (0, 0);
         if let Some(path) = &self.output {
             let first = found.first().map(|stretch| stretch.episode.clone());
             let own: Vec<&ConstraintStretch> =
                 found.iter().filter(|stretch| Some(&stretch.episode) == first.as_ref()).collect();
             let robot = self.robot.as_ref().map(|robot| std::path::absolute(robot).unwrap_or_else(|_| robot.clone()));
             let robot = robot.map(|robot| displayed(&robot));
-            write(path, constraint_file(&own, &model.state, robot.as_deref()).as_bytes())?;
+            let file = constraint_file(&own, &model.state, robot.as_deref());
+            let with_one = own.iter().filter(|stretch| stretch.acting == Acting::Constraint).count();
+            repeated = (file.lines().filter(|line| *line == "[[constraint]]").count(), with_one);
+            write(path, file.as_bytes())?;
         }
         if session.json {
             let words: Vec<String> = found.iter().map(|stretch| stretch.in_words(&model.state)).collect();
             return Ok(Output::json(&json!({ "constraints": found, "in_words": words }), Exit::Done));
         }
-        Ok(Output::done(self.told(&model, &found)))
+        Ok(Output::done(self.told(&model, &found, repeated)))
     }
 
     fn links(&self, session: &Session, model: &Model) -> Result<Option<TaskLinks>, Failure> {
@@ -102,7 +106,8 @@ impl Constraints {
         Ok(found.into_iter().filter(|stretch| stretch.episode == *name).collect())
     }
 
-    fn told(&self, model: &Model, found: &[ConstraintStretch]) -> String {
+    /// `repeated` is how many constraints a roll-out can repeat, of how many in the file.
+    fn told(&self, model: &Model, found: &[ConstraintStretch], repeated: (usize, usize)) -> String {
         let mut lines = Lines::default();
         let count = |acting| found.iter().filter(|stretch| stretch.acting == acting).count();
         let constraints = count(Acting::Constraint);
@@ -122,7 +127,14 @@ impl Constraints {
             lines.add("", &format!("and {} more: --json shows all, --of NAME one episode", found.len() - LISTED));
         }
         if let Some(path) = &self.output {
-            lines.written(path, "for policy-align rollout --constraint");
+            let what = match repeated {
+                (0, _) => "comments only: no constraint that a roll-out can repeat".to_owned(),
+                (some, all) if some < all => {
+                    format!("{some} of {all} for policy-align rollout --constraint, the others as comments")
+                }
+                _ => "for policy-align rollout --constraint".to_owned(),
+            };
+            lines.written(path, &what);
         }
         lines.into_text()
     }
