@@ -12,6 +12,7 @@ use std::sync::atomic::AtomicBool;
 use cases::{Case, Has, Plane, at_rate, noisy, parabola};
 use motion::Recordings;
 use policy_align::{Decision, FitOptions, LearnerChoice, PrepareOptions, Progress, Smoothing, fit, prepare};
+use rayon::prelude::*;
 use running::{folder, run, run_in};
 
 fn decisions(recordings: &Recordings, prepare_options: &PrepareOptions, learner: LearnerChoice) -> Vec<Decision> {
@@ -49,13 +50,13 @@ fn every_decision_names_a_flag_that_fit_has() {
         smoothing: Smoothing::Samples(7),
         ..PrepareOptions::default()
     };
-    let mut all: Vec<Decision> = Vec::new();
-    for recordings in recordings() {
-        for options in [&PrepareOptions::default(), &scaled] {
-            all.extend(decisions(&recordings, options, LearnerChoice::Auto));
-        }
-    }
-    all.extend(decisions(&recordings()[0], &scaled, LearnerChoice::PolicyAlign));
+    let recordings = recordings();
+    let options = [PrepareOptions::default(), scaled.clone()];
+    let each: Vec<_> =
+        recordings.iter().flat_map(|recordings| options.iter().map(move |it| (recordings, it))).collect();
+    let found = each.par_iter().map(|(recordings, options)| decisions(recordings, options, LearnerChoice::Auto));
+    let mut all: Vec<Decision> = found.flatten().collect();
+    all.extend(decisions(&recordings[0], &scaled, LearnerChoice::PolicyAlign));
     for decision in &all {
         assert!(known(&decision.flag), "{decision:?}");
         assert!(!decision.what.is_empty() && !decision.value.is_empty() && !decision.why.is_empty(), "{decision:?}");

@@ -8,7 +8,7 @@ use pulp::Simd;
 pub(crate) type Padded = [f64; 4];
 
 /// Where a frame is: the columns of its rotation, and its origin, in root axes and metres. Of one configuration, vectors
-/// are [`Padded`]; of several, each of the three parts of a vector is a number for every one of them.
+/// are [`Padded`], or one register of four; of several, each of the three parts of a vector is a number for every one of them.
 #[derive(Debug, Clone, Copy)]
 #[repr(align(64))]
 pub(crate) struct Placement<T = f64, const W: usize = 4> {

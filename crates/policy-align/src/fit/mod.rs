@@ -29,7 +29,7 @@ use rand_chacha::ChaCha8Rng;
 use crate::channel_joints::joints_in_degrees;
 use crate::trust::{
     AlignedNumbers, CommonPlane, TrustNumbers, VerdictInput, along_the_motion, common_surface, judge, pushed,
-    share_leaving, share_unknown,
+    share_leaving, share_unknown, wall,
 };
 use crate::{DataSummary, Decision, Finding, FitError, Learnt, MadeBy, Model, PredictedSpeed, Prepared};
 use aligning::AlignedFit;
@@ -71,10 +71,12 @@ pub fn fit_with(
     progress.begin(0, steps, "cleaning the recordings")?;
     let comparable = if prepared.context.is_empty() { None } else { Some(context::comparable(prepared, options)?) };
     let prepared = comparable.as_ref().unwrap_or(prepared);
-    let rows = with_digests(rows(prepared)?, prepared, digests)?;
     let robot = options.robot.as_deref().map(RobotModel::from_urdf).transpose();
     let robot = robot.map_err(|error| FitError::Robot { reason: error.to_string() })?;
-    let (rows, links) = LinkNames::with_spaces(rows, prepared, robot.as_ref())?;
+    let rows_of = |prepared: &Prepared| {
+        LinkNames::with_spaces(with_digests(rows(prepared)?, prepared, digests)?, prepared, robot.as_ref())
+    };
+    let (rows, links) = rows_of(prepared)?;
     progress.begin(1, steps, "learning with and without constraints")?;
     let readings = learn(&rows, options)?;
     let weighed = inertia::weighed(prepared, &rows, &readings, (robot.as_ref(), options))?;
@@ -86,12 +88,12 @@ pub fn fit_with(
     let (prepared, rows, readings) = match (weighed, &rescaled) {
         (Some(inertia::Weighed { rows, readings, .. }), _) => (prepared, rows, readings),
         (None, Some(rescaled)) => {
-            // Both would take twice the memory.
-            drop((rows, readings));
-            let rows = with_digests(recorded_rows::rows(rescaled)?, rescaled, digests)?;
-            let (rows, _) = LinkNames::with_spaces(rows, rescaled, robot.as_ref())?;
-            let readings = learn(&rows, options)?;
-            (rescaled, rows, readings)
+            let again = |prepared: &Prepared| {
+                let (rows, _) = rows_of(prepared)?;
+                let readings = learn(&rows, options)?;
+                Ok((rows, readings))
+            };
+            units::better((prepared, rescaled), (rows, readings), again)?
         }
         (None, None) => (prepared, rows, readings),
     };
@@ -126,6 +128,8 @@ pub fn fit_with(
     findings.extend(robot.and_then(|robot| joints_in_degrees(&robot, &prepared.state)));
     findings.extend(plane(prepared, &numbers));
     findings.extend(common_surface(&rows, &prepared.state, &numbers));
+    let gap = if takes_slope(&readings, options.learner) { numbers.gap } else { 0.0 };
+    findings.extend(wall(&rows, prepared, gap));
     let trust = judge(VerdictInput {
         numbers,
         findings: &findings,

@@ -44,6 +44,28 @@ pub(super) fn learnt(
     Ok(Some(rescaled))
 }
 
+/// Rows up to which a fit is kept while another is made.
+const KEPT: usize = 20_000;
+
+/// The fit of the `recorded` units, made already, or of those `learnt`, whichever predicts left-out movements better: the search for
+/// units knows less than a whole fit, and constraints that turn mislead it.
+pub(super) fn better<'p>(
+    (recorded, learnt): (&'p Prepared, &'p Prepared),
+    (rows, readings): (Rows, AutoFit),
+    fit: impl Fn(&Prepared) -> Result<(Rows, AutoFit), FitError>,
+) -> Result<(&'p Prepared, Rows, AutoFit), FitError> {
+    let as_recorded = readings.slope().report().r_squared;
+    // Two large ones would take twice the memory.
+    let kept = (rows.len() <= KEPT).then_some((rows, readings));
+    let (rows, readings) = fit(learnt)?;
+    if readings.slope().report().r_squared > as_recorded {
+        return Ok((learnt, rows, readings));
+    }
+    drop((rows, readings));
+    let (rows, readings) = kept.map_or_else(|| fit(recorded), Ok)?;
+    Ok((recorded, rows, readings))
+}
+
 /// With four significant digits, so that it can be typed.
 fn in_short(factor: f64) -> f64 {
     format!("{factor:.3e}").parse().expect("a number that was printed")

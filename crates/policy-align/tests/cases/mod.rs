@@ -1,5 +1,6 @@
 //! Recordings with their truth, good and bad, as laboratories make them.
 
+mod in_the_way;
 mod unseen;
 
 use constraints::{LinearConstraint, PfaffianConstraint, Switching, Unconstrained};
@@ -233,7 +234,7 @@ pub(crate) fn arm(count: usize, seed: u64) -> Vec<Recording> {
     arm.record(&mut ChaCha8Rng::seed_from_u64(seed)).unwrap()
 }
 
-type Make = Box<dyn Fn(u64) -> Case>;
+type Make = Box<dyn Fn(u64) -> Case + Send + Sync>;
 
 /// A case by its name.
 pub(crate) struct Named {
@@ -243,7 +244,7 @@ pub(crate) struct Named {
     pub(crate) right: f64,
 }
 
-fn case(name: &'static str, make: impl Fn(u64) -> Case + 'static) -> Named {
+fn case(name: &'static str, make: impl Fn(u64) -> Case + Send + Sync + 'static) -> Named {
     Named { name, make: Box::new(make), right: RIGHT }
 }
 
@@ -552,5 +553,6 @@ pub(crate) fn all() -> Vec<Named> {
         }),
     ];
     all.extend(unseen::all());
+    all.extend(in_the_way::all());
     all
 }

@@ -10,7 +10,7 @@ use rand_distr::StandardNormal;
 
 use super::{Case, FRESH, Named};
 
-const COUNT: usize = 40;
+pub(super) const COUNT: usize = 40;
 const SAMPLES: usize = 50;
 const STEP: f64 = 0.05;
 /// Euler steps between two samples.
@@ -21,7 +21,7 @@ const PHASE: usize = 25;
 type Vector = DVector<f64>;
 type Random = ChaCha8Rng;
 /// The policy of a movement, of time and state, and what the robot makes of it.
-type Taught = (Box<dyn Fn(f64, &Vector) -> Vector>, Box<dyn Fn(f64, &Vector) -> Vector>);
+pub(super) type Taught = (Box<dyn Fn(f64, &Vector) -> Vector>, Box<dyn Fn(f64, &Vector) -> Vector>);
 
 /// A bumpy bowl: −∇(½|x|² + 0.4 Σ sin aₖᵀx).
 fn bowl(x: &Vector) -> Vector {
@@ -37,7 +37,7 @@ fn bowl(x: &Vector) -> Vector {
 /// Usual size of the bowl's policy where movements begin.
 const USUAL: f64 = 1.7;
 
-fn normal(dim: usize, rng: &mut Random) -> Vector {
+pub(super) fn normal(dim: usize, rng: &mut Random) -> Vector {
     DVector::from_fn(dim, |_, _| rng.sample::<f64, _>(StandardNormal)).normalize()
 }
 
@@ -50,7 +50,7 @@ fn tilted(n: &Vector, most: f64, rng: &mut Random) -> Vector {
 }
 
 /// Blocks `n`, along which the robot moves with `push` instead.
-fn pressed(n: &Vector, push: f64, policy: &Vector) -> Vector {
+pub(super) fn pressed(n: &Vector, push: f64, policy: &Vector) -> Vector {
     policy + n * (push - n.dot(policy))
 }
 
@@ -61,7 +61,7 @@ fn normals(dim: usize, rng: &mut Random) -> impl Fn(f64) -> Vector + use<> {
 }
 
 /// A movement: states, what the robot did and what the policy would, each (n, N).
-fn movement(start: Vector, (policy, robot): &Taught) -> [DMatrix<f64>; 3] {
+pub(super) fn movement(start: Vector, (policy, robot): &Taught) -> [DMatrix<f64>; 3] {
     let (mut x, mut columns) = (start, [Vec::new(), Vec::new(), Vec::new()]);
     for i in 0..SAMPLES {
         let time = |sub: usize| STEP * (i as f64 + sub as f64 / SUB_STEPS as f64);
@@ -87,7 +87,7 @@ fn taught(dim: usize, seed: u64, mut teach: impl FnMut(usize, &mut Random) -> Ta
     of_movements(&["x", "y", "z"][..dim], &movements)
 }
 
-fn of_movements(names: &[&str], movements: &[[DMatrix<f64>; 3]]) -> Case {
+pub(super) fn of_movements(names: &[&str], movements: &[[DMatrix<f64>; 3]]) -> Case {
     let (shown, fresh) = movements.split_at(COUNT);
     let episode = |(at, [states, velocities, _]): (usize, &[DMatrix<f64>; 3])| Episode {
         name: (at + 1).to_string(),
@@ -253,7 +253,7 @@ fn on_surfaces(round: bool, one: bool, seed: u64) -> Case {
 /// A policy is right below this error (nUPE), which is less than elsewhere: what is asked here is whether it is named.
 const RIGHT: f64 = 0.1;
 
-fn case(name: &'static str, make: impl Fn(u64) -> Case + 'static) -> Named {
+pub(super) fn case(name: &'static str, make: impl Fn(u64) -> Case + Send + Sync + 'static) -> Named {
     Named { right: RIGHT, ..super::case(name, make) }
 }
 

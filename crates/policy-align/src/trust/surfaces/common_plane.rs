@@ -4,8 +4,8 @@ use motion::{Demonstrations, upper_median};
 use nalgebra::{DMatrix, DVector};
 use prepare::numbers::short;
 
+use super::{equation, parts};
 use crate::{Finding, StateChannel, Verdict};
-use prepare::sum_of_parts;
 
 /// Thickness over the next extent, at most.
 const FLAT: f64 = 0.03;
@@ -62,16 +62,10 @@ impl CommonPlane {
 
     /// A remark with the plane, or the planes, in words.
     pub(crate) fn finding(&self, state: &[StateChannel]) -> Finding {
-        let names: Vec<&str> = state.iter().map(|channel| channel.name.as_str()).collect();
-        let unit = match state.first().and_then(|channel| channel.unit.as_deref()) {
-            Some(unit) if state.iter().all(|channel| channel.unit.as_deref() == Some(unit)) => format!(" {unit}"),
-            _ => String::new(),
-        };
-        let plane = sum_of_parts(self.normal.as_slice(), &names, 3);
-        let level = short(self.level);
+        let plane = parts(&self.normal, state);
         let angle = short(self.angle.to_degrees());
         let what = if self.apart <= 5.0 * self.thickness.max(1e-9 * self.level.abs()) {
-            format!("all movements stay at {plane} = {level}{unit} (normal ± {angle}°)")
+            format!("all movements stay at {} (normal ± {angle}°)", equation(&self.normal, self.level, state))
         } else {
             format!("every movement keeps its own value of {plane} (normal ± {angle}°)")
         };

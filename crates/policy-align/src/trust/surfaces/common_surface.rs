@@ -5,8 +5,8 @@ use nalgebra::{DVector, DVectorView, SymmetricEigen};
 use prepare::direction_by_channels;
 use prepare::numbers::{percent, short};
 
-use super::numbers::TrustNumbers;
 use super::quadratics::{Quadratic, Quadratics};
+use crate::trust::TrustNumbers;
 use crate::{Finding, StateChannel, Verdict};
 
 /// Dimensions at most: in twelve the functions that are tried have 90 coefficients.
@@ -97,8 +97,8 @@ mod tests {
     use rand::{RngExt, SeedableRng};
     use rand_chacha::ChaCha8Rng;
 
+    use super::super::quadratics::PARTS;
     use super::*;
-    use crate::trust::quadratics::PARTS;
 
     /// What movements do not leave.
     #[derive(Debug, Clone, Copy)]

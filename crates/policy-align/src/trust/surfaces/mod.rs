@@ -1,0 +1,31 @@
+//! Surfaces that no movement crosses, found without a policy: one common to all movements may hide what the policy does there.
+
+mod common_plane;
+mod common_surface;
+mod quadratics;
+mod wall;
+
+pub(crate) use common_plane::CommonPlane;
+pub(crate) use common_surface::common_surface;
+pub(crate) use wall::wall;
+
+use nalgebra::DVector;
+use prepare::numbers::short;
+use prepare::sum_of_parts;
+
+use crate::StateChannel;
+
+/// A unit normal in words: 0.36 x + 0.86 y.
+fn parts(normal: &DVector<f64>, state: &[StateChannel]) -> String {
+    let names: Vec<&str> = state.iter().map(|channel| channel.name.as_str()).collect();
+    sum_of_parts(normal.as_slice(), &names, 3)
+}
+
+/// A plane in words, in the units of the recording: 0.36 x + 0.86 y = 1.2 m.
+fn equation(normal: &DVector<f64>, level: f64, state: &[StateChannel]) -> String {
+    let unit = match state.first().and_then(|channel| channel.unit.as_deref()) {
+        Some(unit) if state.iter().all(|channel| channel.unit.as_deref() == Some(unit)) => format!(" {unit}"),
+        _ => String::new(),
+    };
+    format!("{} = {}{unit}", parts(normal, state), short(level))
+}

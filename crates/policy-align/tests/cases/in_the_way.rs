@@ -1,0 +1,75 @@
+//! A wall that all movements run into, and constraints that turn.
+
+use nalgebra::{DMatrix, DVector};
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use rand_distr::StandardNormal;
+
+use super::unseen::{COUNT, case, movement, normal, of_movements, pressed};
+use super::{Case, FRESH, Named};
+
+/// Radians a second.
+const TURNING: f64 = 0.4;
+
+/// −∇ of a bowl with other curvatures along each axis, and bumps; its goal is near 0.
+fn bowl(x: &DVector<f64>) -> DVector<f64> {
+    let last = (x.len() - 1) as f64;
+    DVector::from_fn(x.len(), |k, _| -(1.0 + k as f64 / last) * x[k] - 0.4 * (1.5 * x[k] + k as f64).cos())
+}
+
+/// White noise of velocities, as a share of them, and of positions, which spread by about 1.
+fn noisy(case: Case, share: f64, seed: u64) -> Case {
+    let mut rng = ChaCha8Rng::seed_from_u64(seed ^ 0x2b);
+    let case = case.velocity_noise(share, seed);
+    case.each(|episode| episode.positions.apply(|x| *x += share * rng.sample::<f64, _>(StandardNormal)))
+}
+
+/// No movement gets over the wall n·x = −0.4, behind which is the goal; nothing else is in the way.
+fn walled(dim: usize, seed: u64) -> Case {
+    const LEVEL: f64 = -0.4;
+    let mut rng = ChaCha8Rng::seed_from_u64(seed);
+    let n = normal(dim, &mut rng);
+    let movements: Vec<[DMatrix<f64>; 3]> = (0..COUNT + FRESH)
+        .map(|_| {
+            let mut start = DVector::from_fn(dim, |_, _| rng.random_range(-2.0..2.0));
+            start -= &n * (2.0 * (n.dot(&start) - LEVEL).max(0.0));
+            let n = n.clone();
+            let robot = move |_: f64, x: &DVector<f64>| {
+                let policy = bowl(x);
+                let blocks = n.dot(x) >= LEVEL && n.dot(&policy) > 0.0;
+                if blocks { pressed(&n, 0.0, &policy) } else { policy }
+            };
+            movement(start, &(Box::new(|_, x| bowl(x)), Box::new(robot)))
+        })
+        .collect();
+    of_movements(&["x", "y", "z"][..dim], &movements)
+}
+
+/// One constraint for each movement, whose normal turns.
+fn turning(seed: u64) -> Case {
+    let mut rng = ChaCha8Rng::seed_from_u64(seed);
+    let movements: Vec<[DMatrix<f64>; 3]> = (0..COUNT + FRESH)
+        .map(|_| {
+            let start = DVector::from_fn(6, |_, _| rng.random_range(-2.0..2.0));
+            let n = normal(6, &mut rng);
+            let across = normal(6, &mut rng);
+            let across = (&across - &n * n.dot(&across)).normalize();
+            let robot = move |time: f64, x: &DVector<f64>| {
+                let (sine, cosine) = (TURNING * time).sin_cos();
+                pressed(&(&n * cosine + &across * sine), 0.0, &bowl(x))
+            };
+            movement(start, &(Box::new(|_, x| bowl(x)), Box::new(robot)))
+        })
+        .collect();
+    of_movements(&["q1", "q2", "q3", "q4", "q5", "q6"], &movements)
+}
+
+/// All of them.
+pub(crate) fn all() -> Vec<Named> {
+    vec![
+        case("a wall in the way of all, 2-D", |s| walled(2, s)),
+        case("a wall in the way of all, 2-D, 2 % noise", |s| noisy(walled(2, s), 0.02, s)),
+        case("a wall in the way of all, 3-D, 1 % noise", |s| noisy(walled(3, s), 0.01, s)),
+        case("constraints that turn, 6-D, 1 % noise", |s| noisy(turning(s), 0.01, s)),
+    ]
+}
