@@ -148,7 +148,7 @@ impl View {
             sums.push(Sums { multipliers, gain, noise });
         }
         let scatters = if still { PrefixSums::about_zero(&velocities) } else { PrefixSums::of(&velocities) };
-        View { basis, still, scatters, velocities, disagreements, grams, sums }
+        View { basis, velocities, disagreements, grams, still, scatters, sums }
     }
 
     /// Whether v = u: what [`View::change`] adds to [`Disagreement::square`] is then the least of a sum of squares.

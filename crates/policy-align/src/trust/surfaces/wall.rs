@@ -165,8 +165,9 @@ fn principal(states: &DMatrix<f64>) -> (Vec<f64>, DVector<f64>) {
 fn spread_out(plane: usize, n: usize, states: usize) -> Vec<usize> {
     // The root of xⁿ⁺¹ = x + 1, the golden ratio in one dimension.
     let ratio = (0..64).fold(2.0_f64, |root, _| (1.0 + root).powf(1.0 / (n + 1) as f64));
-    let place = |k: usize| ((plane + 1) as f64 * ratio.powi(-(k as i32 + 1))).fract() * states as f64;
-    (0..n).map(|k| (place(k) as usize).min(states - 1)).collect()
+    let powers = std::iter::successors(Some(1.0 / ratio), |power| Some(power / ratio));
+    let places = powers.take(n).map(|power| ((plane + 1) as f64 * power).fract() * states as f64);
+    places.map(|place| (place as usize).min(states - 1)).collect()
 }
 
 #[cfg(test)]
