@@ -183,6 +183,28 @@ fn velocities_that_are_none() {
     assert_eq!(verdict(&requested, what), Verdict::Doubtful);
 }
 
+/// Steps after exact positions are a map, and learnt from; other differences tell less than the positions do.
+#[test]
+fn velocities_that_are_differences() {
+    for ((before, after), expected) in
+        [((0, 1), VelocitySource::Recorded), ((1, 0), VelocitySource::Positions), ((1, 1), VelocitySource::Positions)]
+    {
+        let recordings = changed(|episode| {
+            let x = &episode.positions;
+            let velocity = |axis: usize, i: usize| {
+                let (from, to) = (i.saturating_sub(before), (i + after).min(SAMPLES - 1));
+                (x[(axis, to)] - x[(axis, from)]) / (STEP * (to - from).max(1) as f64)
+            };
+            episode.velocities = Some(DMatrix::from_fn(2, SAMPLES, velocity));
+        });
+        assert_eq!(prepared(&recordings).velocities, expected, "{before} before, {after} after");
+        let requested = PrepareOptions { smoothing: Smoothing::Off, ..PrepareOptions::default() };
+        let is_learnt = expected == VelocitySource::Recorded;
+        let expected = if is_learnt { expected } else { VelocitySource::PositionsAsRequested };
+        assert_eq!(prepare(&recordings, &requested).unwrap().velocities, expected);
+    }
+}
+
 #[test]
 fn stamps() {
     let slow = prepared(&changed(|episode| episode.times.stamps_mut().iter_mut().for_each(|t| *t *= 1000.0)));

@@ -15,7 +15,7 @@ pub(super) fn make_finite(draft: &mut RawEpisode, names: &[String], word: &str, 
     let bad: Vec<usize> = (0..draft.len()).filter(|&sample| !is_finite(draft, sample, n)).collect();
     let (Some(&first), count) = (bad.first(), bad.len()) else { return Ok(0) };
     match nan {
-        Nan::Refuse => Err(not_finite(draft, (first, names, word), REFUSED)),
+        Nan::Refuse => Err(not_finite(draft, first, names, word, REFUSED)),
         Nan::Drop => {
             let mut bad = bad.into_iter().peekable();
             let finite: Vec<usize> = (0..draft.len()).filter(|sample| bad.next_if_eq(sample).is_none()).collect();
@@ -26,7 +26,7 @@ pub(super) fn make_finite(draft: &mut RawEpisode, names: &[String], word: &str, 
             let (before, after) = (run[0].wrapping_sub(1), run[run.len() - 1] + 1);
             let fits = run[0] > 0 && after < draft.len() && run.len() <= LONGEST_FILL;
             if !fits || run.iter().any(|&sample| !draft.times[sample].is_finite()) {
-                return Err(not_finite(draft, (run[0], names, word), UNFILLED));
+                return Err(not_finite(draft, run[0], names, word, UNFILLED));
             }
             interpolate(draft, run, before, after, n);
             Ok(())
@@ -43,7 +43,7 @@ fn is_finite(draft: &RawEpisode, sample: usize, n: usize) -> bool {
 }
 
 /// What of a sample is missing.
-fn not_finite(draft: &RawEpisode, (sample, names, word): (usize, &[String], &str), remedy: &str) -> ReadError {
+fn not_finite(draft: &RawEpisode, sample: usize, names: &[String], word: &str, remedy: &str) -> ReadError {
     let n = names.len();
     let here = |numbers: &[f64]| {
         let values = numbers.get(sample * n..(sample + 1) * n)?;

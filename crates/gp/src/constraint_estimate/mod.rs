@@ -79,9 +79,8 @@ impl ConstraintEstimates {
         let first = FIRST.powi(2) * search.wanted.mean_square();
         let policy_variance = search.left(&search.parts(first)).unwrap_or(first);
         let pushing = search.parts_in_likely_spaces(policy_variance);
-        let cost = search.cost(&pushing);
+        let (cost, rarity) = (search.cost(&pushing), search.rarity.clone());
         // Noise lets constraints move that do not: all of them do, or none.
-        let rarity = std::mem::replace(&mut search.rarity, vec![0.0; spaces.len()]);
         search.still = true;
         let mut parts = search.parts_in_likely_spaces(policy_variance);
         if search.cost(&parts) > cost {
@@ -113,6 +112,7 @@ struct Search<'a> {
 impl Search<'_> {
     /// [`Search::parts`], once it is known in which spaces most constraints are.
     fn parts_in_likely_spaces(&mut self, least: f64) -> Vec<Parts> {
+        self.rarity.fill(0.0);
         let parts = self.parts(least);
         if self.spaces.len() == 1 {
             return parts;
@@ -174,7 +174,7 @@ impl Search<'_> {
             basis.as_ref().map(|basis| View::of(space, basis, rows, &velocities, &disagreement, self.still))
         };
         let views = self.spaces.iter().zip(&self.bases).map(view).collect();
-        Movement { disagreement, views, rarity: self.rarity.clone() }
+        Movement { disagreement, views, rarity: self.rarity.clone(), still: self.still }
     }
 
     /// The variance of the policy that all parts leave, the median over them; none if there are none.

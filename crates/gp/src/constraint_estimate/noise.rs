@@ -1,11 +1,10 @@
 //! What a velocity's noise counts where constraints are looked for.
 
-use motion::upper_median;
 use nalgebra::{DMatrix, DVector};
 
 use crate::Rows;
 use crate::rows::task_space::TaskSpace;
-use crate::stretches::noise::{noise_of_differences, velocity_noise};
+use crate::stretches::noise::{known_noise, noise_of_differences, velocity_noise};
 
 /// Share of their known variance below which velocities differ so little from sample to sample that they share their errors: they
 /// are slopes of smoothed positions.
@@ -24,8 +23,7 @@ pub(super) fn noise(rows: &Rows, movements: &[&[usize]], spaces: &[TaskSpace]) -
     };
     let recorded = velocity_noise(rows.velocities(), rows.variances(), movements);
     let least = recorded.into_iter().chain(spaces.iter().filter_map(in_space)).reduce(f64::min)?;
-    let known = rows.variances().and_then(|variances| upper_median(variances.to_vec())).unwrap_or(0.0);
-    let is_smooth = noise_of_differences(rows.velocities(), movements)? < SMOOTH * known;
+    let is_smooth = noise_of_differences(rows.velocities(), movements)? < SMOOTH * known_noise(rows.variances());
     Some(if is_smooth { SMOOTHED * least } else { least })
 }
 

@@ -18,6 +18,8 @@ pub(super) struct Movement {
     pub(super) views: Vec<Option<View>>,
     /// What a constraint in each space costs for being rarer than others: (S38).
     pub(super) rarity: Vec<f64>,
+    /// Whether b = 0.
+    pub(super) still: bool,
 }
 
 impl Movement {
@@ -68,7 +70,7 @@ impl Movement {
                 continue;
             }
             let change = view.change((begin, end), directions, rank, &self.disagreement);
-            let cost = none + change + self.price((begin, end), dim, rank, view.still) + SEGMENT;
+            let cost = none + change + self.price((begin, end), dim, rank) + SEGMENT;
             if best.is_none_or(|(least, _)| cost < least) {
                 best = Some((cost, rank));
             }
@@ -88,8 +90,8 @@ impl Movement {
 
     /// What A of so many rows and b cost, or A alone: less where velocities are known better than the policy, since one that does not
     /// vary is then no accident.
-    fn price(&self, (begin, end): (usize, usize), dim: usize, rank: usize, still: bool) -> f64 {
-        let parameters = PARAMETER * (rank * (dim - rank + usize::from(!still))) as f64;
+    fn price(&self, (begin, end): (usize, usize), dim: usize, rank: usize) -> f64 {
+        let parameters = PARAMETER * (rank * (dim - rank + usize::from(!self.still))) as f64;
         let accident = self.disagreement.accident(begin, end);
         rank as f64 * (parameters / rank as f64 + DIMENSION - accident).max(ROW)
     }
@@ -140,9 +142,7 @@ impl Costs for MovementCosts<'_> {
             return 0.0;
         }
         let dim = self.movement.disagreement.of.nrows();
-        let still = self.movement.views.iter().flatten().any(|view| view.still);
-        let of =
-            |rank| self.left.at_least(begin, rank - 1) + self.movement.price((begin, end), dim, rank, still) + SEGMENT;
+        let of = |rank| self.left.at_least(begin, rank - 1) + self.movement.price((begin, end), dim, rank) + SEGMENT;
         let possible = (1..=dim).filter(|rank| end - begin + rank >= dim + SPARE);
         possible.map(of).fold(self.movement.disagreement.square(begin, end) + SEGMENT, f64::min)
     }

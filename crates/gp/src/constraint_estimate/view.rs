@@ -59,8 +59,6 @@ pub(super) struct View {
     disagreements: DMatrix<f64>,
     /// JJᵀ of each sample, (m, m); none if it is I.
     grams: Option<Vec<DMatrix<f64>>>,
-    /// Whether b = 0.
-    pub(super) still: bool,
     scatters: PrefixSums,
     /// Over the first samples.
     sums: Vec<Sums>,
@@ -98,7 +96,7 @@ impl Directions {
 }
 
 impl View {
-    /// Of some rows of a space. `velocities` (n, N) are theirs.
+    /// Of some rows of a space, where constraints may stand `still`: b = 0. `velocities` (n, N) are theirs.
     pub(super) fn of(
         space: &TaskSpace,
         basis: &DMatrix<f64>,
@@ -148,7 +146,7 @@ impl View {
             sums.push(Sums { multipliers, gain, noise });
         }
         let scatters = if still { PrefixSums::about_zero(&velocities) } else { PrefixSums::of(&velocities) };
-        View { basis, velocities, disagreements, grams, still, scatters, sums }
+        View { basis, velocities, disagreements, grams, scatters, sums }
     }
 
     /// Whether v = u: what [`View::change`] adds to [`Disagreement::square`] is then the least of a sum of squares.
@@ -170,7 +168,7 @@ impl View {
         let mut matrix =
             self.scatters.scatter(begin, end) / (gain * noise) - (&to.multipliers - &from.multipliers) * gain;
         if self.grams.is_some() {
-            let freedom = if self.still { count } else { count - 1.0 };
+            let freedom = if self.scatters.is_about_zero() { count } else { count - 1.0 };
             matrix -= (&to.noise.0 - &from.noise.0) * (freedom / (count * gain));
             matrix += (&to.noise.1 - &from.noise.1) * gain;
         }
@@ -196,7 +194,7 @@ impl View {
         let rows = &directions.first(rank);
         let along = |of: &DMatrix<f64>| rows.tr_mul(&of.columns(begin, end - begin));
         let (velocities, wanted) = (along(&self.velocities), along(&self.disagreements));
-        let mean = if self.still { DVector::zeros(rank) } else { velocities.column_mean() };
+        let mean = if self.scatters.is_about_zero() { DVector::zeros(rank) } else { velocities.column_mean() };
         let of_sample = |at: usize| {
             let gram = rows.tr_mul(&(&grams[begin + at] * rows));
             let Some(inverse) = gram.try_inverse() else { return 0.0 };

@@ -32,8 +32,12 @@ pub(crate) fn velocity_noise(
     extents.sort_by(f64::total_cmp);
     let from_windows = extents.get((QUANTILE * extents.len() as f64) as usize).copied().unwrap_or(f64::INFINITY);
     let mean_square = velocities.norm_squared() / velocities.ncols() as f64;
-    let known = variances.and_then(|variances| upper_median(variances.to_vec())).unwrap_or(0.0);
-    Some(from_differences.min(TIMES * from_windows).max(ROUNDING * mean_square).max(known))
+    Some(from_differences.min(TIMES * from_windows).max(ROUNDING * mean_square).max(known_noise(variances)))
+}
+
+/// The median of variances that are known, 0 if none are.
+pub(crate) fn known_noise(variances: Option<&[f64]>) -> f64 {
+    variances.and_then(|variances| upper_median(variances.to_vec())).unwrap_or(0.0)
 }
 
 /// The variance of a velocity along an axis by third differences, an upper bound; none without three samples next to each other.

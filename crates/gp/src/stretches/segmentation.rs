@@ -92,25 +92,27 @@ pub(crate) struct PrefixSums {
 
 impl PrefixSums {
     pub(crate) fn of(velocities: &DMatrix<f64>) -> Self {
+        PrefixSums::about(velocities, &velocities.column_mean())
+    }
+
+    /// Of scatters about 0 instead of the mean.
+    pub(crate) fn about_zero(velocities: &DMatrix<f64>) -> Self {
+        PrefixSums { first: None, ..PrefixSums::about(velocities, &DVector::zeros(velocities.nrows())) }
+    }
+
+    fn about(velocities: &DMatrix<f64>, origin: &DVector<f64>) -> Self {
         let dim = velocities.nrows();
-        let mean = velocities.column_mean();
         let (mut first, mut second) = (vec![DVector::zeros(dim)], vec![DMatrix::zeros(dim, dim)]);
         for (at, velocity) in velocities.column_iter().enumerate() {
-            let centred = velocity - &mean;
+            let centred = velocity - origin;
             second.push(&second[at] + &centred * centred.transpose());
             first.push(&first[at] + centred);
         }
         PrefixSums { dim, first: Some(first), second }
     }
 
-    /// Of scatters about 0 instead of the mean.
-    pub(crate) fn about_zero(velocities: &DMatrix<f64>) -> Self {
-        let dim = velocities.nrows();
-        let mut second = vec![DMatrix::zeros(dim, dim)];
-        for (at, velocity) in velocities.column_iter().enumerate() {
-            second.push(&second[at] + velocity * velocity.transpose());
-        }
-        PrefixSums { dim, first: None, second }
+    pub(crate) fn is_about_zero(&self) -> bool {
+        self.first.is_none()
     }
 
     /// Σ |u − mean u|² of all samples, or Σ |u|².
@@ -173,6 +175,8 @@ mod tests {
             let centred = DMatrix::from_fn(dim, length, |axis, at| part[(axis, at)] - mean[axis]);
             let scatter = PrefixSums::of(&velocities).scatter(begin, begin + length);
             prop_assert!((scatter - &centred * centred.transpose()).amax() < 1e-12);
+            let about_zero = PrefixSums::about_zero(&velocities).scatter(begin, begin + length);
+            prop_assert!((about_zero - &part * part.transpose()).amax() < 1e-12);
         }
 
         /// Velocities in all directions have no segment, whatever the noise is thought to be below them.

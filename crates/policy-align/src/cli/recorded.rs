@@ -96,9 +96,10 @@ fn other_units(model: &Model, prepared: &Prepared) -> Option<String> {
         .filter(|(here, learnt)| width(learnt) > 0.0 && width(here) > OTHER_UNIT * width(learnt))
         .map(|(_, learnt)| learnt.name.as_str())
         .collect();
-    let names = odd.join(",");
-    let what = format!("{}: over {OTHER_UNIT} times the range that the model learnt from", odd.join(", "));
-    (!odd.is_empty()).then(|| format!("{what}; other units? --degrees {} if these are degrees", value_word(&names)))
+    (!odd.is_empty()).then(|| {
+        let what = format!("{}: over {OTHER_UNIT} times the range that the model learnt from", odd.join(", "));
+        format!("{what}; other units? --degrees {} if these are degrees", value_word(&odd.join(",")))
+    })
 }
 
 /// The constraints that acted on prepared recordings of `files`.

@@ -1,4 +1,4 @@
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use policy_align::gp::Acting;
@@ -69,23 +69,34 @@ impl Constraints {
         let links = self.links(session, &model)?;
         let found = acted(&model, &prepared, links.as_ref(), &self.files)?;
         let found = self.chosen(found, &prepared)?;
-        let mut repeated = (0, 0);
-        if let Some(path) = &self.output {
-            let first = found.first().map(|stretch| stretch.episode.clone());
-            let own: Vec<&ConstraintStretch> =
-                found.iter().filter(|stretch| Some(&stretch.episode) == first.as_ref()).collect();
-            let robot = self.robot.as_ref().map(|robot| std::path::absolute(robot).unwrap_or_else(|_| robot.clone()));
-            let robot = robot.map(|robot| displayed(&robot));
-            let file = constraint_file(&own, &model.state, robot.as_deref());
-            let with_one = own.iter().filter(|stretch| stretch.acting == Acting::Constraint).count();
-            repeated = (file.lines().filter(|line| *line == "[[constraint]]").count(), with_one);
-            write(path, file.as_bytes())?;
-        }
+        let written = self.output.as_ref().map(|path| self.write_first(path, &model, &found)).transpose()?;
         if session.json {
             let words: Vec<String> = found.iter().map(|stretch| stretch.in_words(&model.state)).collect();
             return Ok(Output::json(&json!({ "constraints": found, "in_words": words }), Exit::Done));
         }
-        Ok(Output::done(self.told(&model, &found, repeated)))
+        let mut lines = told(&model, &found);
+        if let (Some(path), Some(what)) = (&self.output, &written) {
+            lines.written(path, what);
+        }
+        Ok(Output::done(lines.into_text()))
+    }
+
+    /// Writes the constraints of the first episode, and says what they are good for.
+    fn write_first(&self, path: &Path, model: &Model, found: &[ConstraintStretch]) -> Result<String, Failure> {
+        let first = found.first().map(|stretch| &stretch.episode);
+        let own: Vec<&ConstraintStretch> = found.iter().filter(|stretch| Some(&stretch.episode) == first).collect();
+        let robot = self.robot.as_ref().map(|robot| std::path::absolute(robot).unwrap_or_else(|_| robot.clone()));
+        let robot = robot.map(|robot| displayed(&robot));
+        let file = constraint_file(&own, &model.state, robot.as_deref());
+        write(path, file.as_bytes())?;
+        let all = own.iter().filter(|stretch| stretch.acting == Acting::Constraint).count();
+        Ok(match file.lines().filter(|line| *line == "[[constraint]]").count() {
+            0 => "comments only: no constraint that a roll-out can repeat".to_owned(),
+            some if some < all => {
+                format!("{some} of {all} for policy-align rollout --constraint, the others as comments")
+            }
+            _ => "for policy-align rollout --constraint".to_owned(),
+        })
     }
 
     fn links(&self, session: &Session, model: &Model) -> Result<Option<TaskLinks>, Failure> {
@@ -105,39 +116,29 @@ impl Constraints {
         known_episode(name, &prepared.episodes, ("--of", &named(&self.files)))?;
         Ok(found.into_iter().filter(|stretch| stretch.episode == *name).collect())
     }
+}
 
-    /// `repeated` is how many constraints a roll-out can repeat, of how many in the file.
-    fn told(&self, model: &Model, found: &[ConstraintStretch], repeated: (usize, usize)) -> String {
-        let mut lines = Lines::default();
-        let count = |acting| found.iter().filter(|stretch| stretch.acting == acting).count();
-        let constraints = count(Acting::Constraint);
-        let others = [
-            (count(Acting::Changing), "that bend or change"),
-            (count(Acting::Nothing), "without any"),
-            (count(Acting::Unseen), "in which none would show"),
-        ];
-        let others = others.iter().filter(|(count, _)| *count > 0).map(|(count, what)| format!(", {count} {what}"));
-        lines.add("stretches", &format!("{constraints} with a constraint{}", others.collect::<String>()));
-        for stretch in found.iter().take(LISTED) {
-            let (from, until) = stretch.seconds;
-            let when = format!("{from:.2}–{until:.2} s");
-            lines.add(&format!("{:.12}", stretch.episode), &format!("{when}  {}", line(stretch, &model.state)));
-        }
-        if found.len() > LISTED {
-            lines.add("", &format!("and {} more: --json shows all, --of NAME one episode", found.len() - LISTED));
-        }
-        if let Some(path) = &self.output {
-            let what = match repeated {
-                (0, _) => "comments only: no constraint that a roll-out can repeat".to_owned(),
-                (some, all) if some < all => {
-                    format!("{some} of {all} for policy-align rollout --constraint, the others as comments")
-                }
-                _ => "for policy-align rollout --constraint".to_owned(),
-            };
-            lines.written(path, &what);
-        }
-        lines.into_text()
+/// How many stretches of each kind there are, and the first ones.
+fn told(model: &Model, found: &[ConstraintStretch]) -> Lines {
+    let mut lines = Lines::default();
+    let count = |acting| found.iter().filter(|stretch| stretch.acting == acting).count();
+    let constraints = count(Acting::Constraint);
+    let others = [
+        (count(Acting::Changing), "that bend or change"),
+        (count(Acting::Nothing), "without any"),
+        (count(Acting::Unseen), "in which none would show"),
+    ];
+    let others = others.iter().filter(|(count, _)| *count > 0).map(|(count, what)| format!(", {count} {what}"));
+    lines.add("stretches", &format!("{constraints} with a constraint{}", others.collect::<String>()));
+    for stretch in found.iter().take(LISTED) {
+        let (from, until) = stretch.seconds;
+        let when = format!("{from:.2}–{until:.2} s");
+        lines.add(&format!("{:.12}", stretch.episode), &format!("{when}  {}", line(stretch, &model.state)));
     }
+    if found.len() > LISTED {
+        lines.add("", &format!("and {} more: --json shows all, --of NAME one episode", found.len() - LISTED));
+    }
+    lines
 }
 
 /// A stretch in words, and how sure it is.

@@ -4,7 +4,7 @@ use motion::{Demonstrations, upper_median};
 use nalgebra::{DMatrix, DVector};
 use prepare::numbers::short;
 
-use super::{equation, parts};
+use super::{as_recorded, equation, parts};
 use crate::{Finding, StateChannel, Verdict};
 
 /// Thickness over the next extent, at most.
@@ -49,9 +49,8 @@ impl CommonPlane {
             return None;
         }
         let tilt: f64 = others.iter().map(|&k| thin.powi(2) / eigen.eigenvalues[k]).sum();
-        // n'Sx is constant, where Sx was learnt from.
         let scaled = eigen.eigenvectors.column(least).into_owned();
-        let normal = DVector::from_fn(dim, |k, _| scaled[k] * state[k].scale);
+        let normal = as_recorded(&scaled, state);
         let length = normal.norm() * if normal[normal.iamax()] < 0.0 { -1.0 } else { 1.0 };
         let levels: Vec<f64> =
             movements.iter().map(|movement| scaled.dot(&movement.states().column_mean()) / length).collect();

@@ -9,11 +9,22 @@ pub(crate) use common_plane::CommonPlane;
 pub(crate) use common_surface::common_surface;
 pub(crate) use wall::wall;
 
+use gp::Rows;
 use nalgebra::DVector;
 use prepare::numbers::short;
 use prepare::sum_of_parts;
 
 use crate::StateChannel;
+
+/// At most so many rows, evenly spread over all.
+fn some_of(rows: &Rows, most: usize) -> Vec<usize> {
+    (0..rows.len()).step_by(rows.len().div_ceil(most).max(1)).collect()
+}
+
+/// n of nᵀx, in the units of the recording, for one of nᵀSx, where Sx was learnt from.
+fn as_recorded(normal: &DVector<f64>, state: &[StateChannel]) -> DVector<f64> {
+    DVector::from_fn(state.len(), |k, _| normal[k] * state[k].scale)
+}
 
 /// A unit normal in words: 0.36 x + 0.86 y.
 fn parts(normal: &DVector<f64>, state: &[StateChannel]) -> String {

@@ -4,6 +4,8 @@ use gp::Rows;
 use motion::upper_median;
 use nalgebra::{Cholesky, DMatrix, DVector, DVectorView};
 
+use super::some_of;
+
 /// Rows at most.
 const ROWS: usize = 3000;
 /// Movements are left out in so many parts.
@@ -28,8 +30,7 @@ pub(super) struct Quadratic {
 impl Quadratics {
     /// Of the rows that move; none if none does.
     pub(super) fn of(rows: &Rows, n: usize) -> Option<Quadratics> {
-        let every = rows.len().div_ceil(ROWS).max(1);
-        let chosen: Vec<usize> = (0..rows.len()).step_by(every).collect();
+        let chosen = some_of(rows, ROWS);
         let states = rows.states().rows(0, n).select_columns(&chosen);
         let mean = states.column_mean();
         let squares: f64 = states.column_iter().map(|x| (x - &mean).norm_squared()).sum();

@@ -7,7 +7,7 @@ use motion::upper_median;
 use nalgebra::{DMatrix, DVector};
 use prepare::numbers::percent;
 
-use super::equation;
+use super::{as_recorded, equation, some_of};
 use crate::{Finding, Prepared, VelocitySource, Verdict};
 
 /// Dimensions at most: planes through so many states are tried, all of which have to lie on the wall.
@@ -74,8 +74,7 @@ pub(crate) fn wall(rows: &Rows, prepared: &Prepared, gap: f64) -> Option<Finding
     }
     let level = wall.normal.dot(&wall.at);
     let level = if level.abs() < EXACT * wall.farthest { 0.0 } else { level };
-    // nᵀSx is constant, where Sx was learnt from.
-    let normal = DVector::from_fn(state.len(), |k, _| wall.normal[k] * state[k].scale);
+    let normal = as_recorded(&wall.normal, state);
     let plane = equation(&(&normal / normal.norm()), level / normal.norm(), state);
     Some(Finding {
         verdict: Verdict::Doubtful,
@@ -88,12 +87,11 @@ pub(crate) fn wall(rows: &Rows, prepared: &Prepared, gap: f64) -> Option<Finding
 impl Wall {
     /// (S47), of at most [`STATES`] rows; planes through states that are spread evenly over all, without chance.
     fn of(rows: &Rows, n: usize) -> Option<Wall> {
-        let every = rows.len().div_ceil(STATES).max(1);
-        let chosen: Vec<usize> = (0..rows.len()).step_by(every).collect();
+        let chosen = some_of(rows, STATES);
         let states = rows.states().rows(0, n).select_columns(&chosen);
         let movement: Vec<usize> = chosen.iter().map(|&row| rows.indices()[row].trajectory).collect();
         let movements = movement.iter().collect::<HashSet<_>>().len() as f64;
-        let widest = principal(&states).0.iter().fold(0.0_f64, |widest, &spread| widest.max(spread));
+        let widest = principal(&states).0[n - 1];
         let is_reached = |wall: &Wall| {
             let reached: HashSet<usize> = wall.on.iter().map(|&state| movement[state]).collect();
             reached.len() as f64 >= MOVEMENTS * movements && wall.width >= WIDE * widest
@@ -111,7 +109,7 @@ impl Wall {
         let mut thickness = THIN * heights.amax();
         let mut width = 0.0;
         for _ in 0..FITS {
-            let near: Vec<usize> = (0..heights.len()).filter(|&k| heights[k].abs() < NEAR * thickness).collect();
+            let near = near(&heights, thickness);
             if near.len() < 5 * n || (near.len() as f64) < 0.5 * SHARE * heights.len() as f64 {
                 return None;
             }
@@ -126,15 +124,11 @@ impl Wall {
             thickness = (1.1 * 1.4826 * median).max(1e-6 * heights.amax());
         }
         let side = -heights.sum().signum();
-        let share_of = |is: &dyn Fn(f64) -> bool| {
-            heights.iter().filter(|&height| is(side * height)).count() as f64 / heights.len() as f64
-        };
-        let farthest = heights.amax();
-        let share = share_of(&|height| height.abs() < NEAR * thickness);
-        let beyond = share_of(&|height| height > BEYOND * thickness);
+        let (on, farthest, all) = (near(&heights, thickness), heights.amax(), heights.len() as f64);
+        let share = on.len() as f64 / all;
+        let beyond = heights.iter().filter(|&height| side * height > BEYOND * thickness).count() as f64 / all;
         let thinness = thickness / farthest;
         let is_wall = thinness < THIN && beyond < 0.01 && share >= SHARE.max(DENSE * thinness) && share < ALL;
-        let on = (0..heights.len()).filter(|&k| heights[k].abs() < NEAR * thickness).collect();
         is_wall.then(|| Wall { normal: normal * side, at, thickness, farthest, on, share, width })
     }
 
@@ -147,6 +141,11 @@ impl Wall {
 /// Distances of states from a plane, negative behind it.
 fn heights(states: &DMatrix<f64>, at: &DVector<f64>, normal: &DVector<f64>) -> DVector<f64> {
     states.tr_mul(normal).add_scalar(-normal.dot(at))
+}
+
+/// Which states lie on a plane.
+fn near(heights: &DVector<f64>, thickness: f64) -> Vec<usize> {
+    (0..heights.len()).filter(|&k| heights[k].abs() < NEAR * thickness).collect()
 }
 
 /// Standard deviations along the principal axes, rising, and the axis of the least.
