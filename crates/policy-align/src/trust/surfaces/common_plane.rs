@@ -50,13 +50,12 @@ impl CommonPlane {
         }
         let tilt: f64 = others.iter().map(|&k| thin.powi(2) / eigen.eigenvalues[k]).sum();
         let scaled = eigen.eigenvectors.column(least).into_owned();
-        let normal = as_recorded(&scaled, state);
-        let length = normal.norm() * if normal[normal.iamax()] < 0.0 { -1.0 } else { 1.0 };
+        let (normal, length) = as_recorded(&scaled, state);
         let levels: Vec<f64> =
             movements.iter().map(|movement| scaled.dot(&movement.states().column_mean()) / length).collect();
         let level = upper_median(levels.clone())?;
         let apart = levels.iter().map(|own| (own - level).abs()).fold(0.0, f64::max);
-        Some(CommonPlane { normal: normal / length, level, apart, angle: tilt.sqrt(), thickness: thin / length.abs() })
+        Some(CommonPlane { normal, level, apart, angle: tilt.sqrt(), thickness: thin / length.abs() })
     }
 
     /// A remark with the plane, or the planes, in words.

@@ -21,9 +21,12 @@ fn some_of(rows: &Rows, most: usize) -> Vec<usize> {
     (0..rows.len()).step_by(rows.len().div_ceil(most).max(1)).collect()
 }
 
-/// n of nᵀx, in the units of the recording, for one of nᵀSx, where Sx was learnt from.
-fn as_recorded(normal: &DVector<f64>, state: &[StateChannel]) -> DVector<f64> {
-    DVector::from_fn(state.len(), |k, _| normal[k] * state[k].scale)
+/// The unit normal n of nᵀx in the units of the recording, its largest entry positive, for one of nᵀSx, where Sx was learnt from; and
+/// what nᵀSx is divided by.
+fn as_recorded(normal: &DVector<f64>, state: &[StateChannel]) -> (DVector<f64>, f64) {
+    let normal = DVector::from_fn(state.len(), |k, _| normal[k] * state[k].scale);
+    let length = normal.norm() * if normal[normal.iamax()] < 0.0 { -1.0 } else { 1.0 };
+    (normal / length, length)
 }
 
 /// A unit normal in words: 0.36 x + 0.86 y.

@@ -74,8 +74,8 @@ pub(crate) fn wall(rows: &Rows, prepared: &Prepared, gap: f64) -> Option<Finding
     }
     let level = wall.normal.dot(&wall.at);
     let level = if level.abs() < EXACT * wall.farthest { 0.0 } else { level };
-    let normal = as_recorded(&wall.normal, state);
-    let plane = equation(&(&normal / normal.norm()), level / normal.norm(), state);
+    let (normal, length) = as_recorded(&wall.normal, state);
+    let plane = equation(&normal, level / length, state);
     Some(Finding {
         verdict: Verdict::Doubtful,
         what: format!("{} of the states lie on the plane {plane}, which no movement crosses", percent(wall.share)),
