@@ -1,4 +1,4 @@
-//! Tells the program what it is built by and for: a run keeps it beside its results.
+//! Passes the compiler and the target to the program; a run stores them with its results.
 
 use std::process::Command;
 

@@ -1,6 +1,6 @@
-//! Alignment, integration to offsets and kept set, on the toy system and on the same in more dimensions.
+//! Alignment, from integration to offsets and kept set, on the toy system and on its extension to more dimensions.
 //!
-//! `RAYON_NUM_THREADS=1 cargo bench -p benches --bench align`; beside NumPy: `benches/peers/compare_align.py`.
+//! `RAYON_NUM_THREADS=1 cargo bench -p benches --bench align`; comparison with NumPy: `benches/peers/compare_align.py`.
 
 use align::{Bandwidth, PolicyAlign};
 use benches::toy_demonstrations;

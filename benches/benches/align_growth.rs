@@ -1,9 +1,9 @@
-//! How processor time and memory of an alignment grow with the number of movements of the toy system, 100 samples each,
+//! Processor time and memory of an alignment as a function of the number of movements of the toy system, 100 samples each,
 //! narrow bandwidth.
 //!
 //! `cargo bench -p benches --bench align_growth -- [dimensions] [K]...`; without numbers d = 2, K = 10³, 10⁴, 10⁵.
 
-#![allow(clippy::print_stdout)] // Its output is what it is for.
+#![allow(clippy::print_stdout)] // This program prints its results.
 
 use std::time::Instant;
 

@@ -1,11 +1,11 @@
-//! What a slope GP that uses all rows gains and costs beside one of 1,500 exact rows, both fitted to the same rows in one process:
-//! error on movements that were not shown, processor time, and whether the error is expected within ten times.
+//! Compares a slope GP that uses all rows with one that uses 1,500 exact rows, both fitted to the same rows in one process:
+//! error on held-out movements, processor time, and whether the expected error is within a factor of ten of the true one.
 //!
-//! `RAYON_NUM_THREADS=1 cargo bench -p benches --bench all_rows -- [data sets of each kind] [NAME]`; without a number five, without a
-//! name all kinds, otherwise those whose names contain it. Of each kind the medians of both errors and of the ratios of error and
-//! time, and how often the expected error is within ten times of the true one.
+//! `RAYON_NUM_THREADS=1 cargo bench -p benches --bench all_rows -- [data sets of each kind] [NAME]`; by default five data sets, and
+//! all kinds instead of those whose names contain NAME. Prints for each kind the medians of both errors and of the ratios of error and
+//! time, and how often the expected error is within a factor of ten of the true one.
 
-#![allow(clippy::print_stdout)] // Its output is what it is for.
+#![allow(clippy::print_stdout)] // This program prints its results.
 
 use std::error::Error;
 
@@ -20,14 +20,14 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::StandardNormal;
 
-/// Movements that are not learnt from, and every how manyth of their samples is judged.
+/// Number of held-out movements, and the stride of their test samples.
 const FRESH: usize = 20;
 const EVERY: usize = 5;
-/// Seconds of a movement, and Euler steps in it.
+/// Duration of a movement in seconds, and number of its Euler steps.
 const SECONDS: f64 = 40.0;
 const STEPS: usize = 2000;
 
-/// Data sets of one kind: velocities have this share of their root mean square as noise along every axis.
+/// Data sets of one kind. The noise of velocities along every axis is this share of their root mean square.
 struct Kind {
     name: &'static str,
     policy: PolicyKind,
@@ -75,11 +75,11 @@ fn kinds() -> Vec<Kind> {
     kinds
 }
 
-/// Rows to learn from, states to compare at, and the policy there.
+/// Training rows, test states, and the policy there.
 type Drawn = (Rows, DMatrix<f64>, DMatrix<f64>);
 
 impl Kind {
-    /// Rows to learn from, and states of other movements with the policy there, (n, Q) each.
+    /// Training rows, and states of other movements with the policy there, (n, Q) each.
     fn draw(&self, seed: u64) -> Result<Drawn, Box<dyn Error>> {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         let (samples, sub_steps) = (self.samples, STEPS / self.samples);
@@ -132,7 +132,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     if kinds.is_empty() {
         return Err(format!("no kind has {name:?} in its name; run without a name to see all").into());
     }
-    // What the program learns with, without its search for constraints that push, and what all rows are compared with.
+    // The program's learner, without its search for constraints that push, and the one for comparison.
     let all = SlopeGp { push_test: PushTest::AssumeNone, ..FitOptions::default().gaussian_processes().slope };
     let exact = SlopeGp { max_rows: 1500, inducing_rows: 0, ..SlopeGp::default() };
     println!("| | movements | noise | all rows | 1,500 exact | ratio | CPU s | CPU ratio | within ten times |");

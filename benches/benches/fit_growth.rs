@@ -1,9 +1,9 @@
-//! How processor time, memory and error of a fit grow with the number of samples: movements of 500 noisy samples in a CSV file, from
-//! reading to the model with its trust numbers, as `policy-align fit` does it.
+//! Processor time, memory and error of a fit as a function of the number of samples: movements of 500 noisy samples in a CSV file, from
+//! reading to the model with its trust numbers, as in `policy-align fit`.
 //!
 //! `cargo bench -p benches --bench fit_growth -- [dimensions] [samples]...`; without numbers d = 2, 10⁴, 10⁵, 10⁶.
 
-#![allow(clippy::print_stdout)] // Its output is what it is for.
+#![allow(clippy::print_stdout)] // This program prints its results.
 
 use std::error::Error;
 use std::fs::File;

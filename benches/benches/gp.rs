@@ -1,5 +1,5 @@
-//! Gaussian processes: fits as in Table 1 and of 1,500 rows, and predictions of 400 and 1,500 rows in 2 and 22 dimensions, one
-//! by one and many at once. About five minutes.
+//! Gaussian processes: fits as in Table 1 and of 1,500 rows, and predictions from 400 and 1,500 rows in 2 and 22 dimensions,
+//! singly and in batches. About five minutes.
 #![allow(missing_docs, reason = "a benchmark")]
 
 use std::hint::black_box;
@@ -25,7 +25,7 @@ fn toy() -> Rows {
     FrontEnd::FiniteDifferences.rows(&demonstrations(&recordings).expect("recordings")).expect("rows")
 }
 
-/// 60 movements of 40 samples down a potential with three wells.
+/// 60 movements of 40 samples in a potential with three wells.
 fn wells(dim: usize) -> Rows {
     let system = BeyondSystem { policy: PolicyKind::Wells { dim }, ..BeyondSystem::default() };
     let recordings = system.record(&mut rng()).expect("the system is sound");
@@ -50,7 +50,7 @@ fn fits(criterion: &mut Criterion) {
     }
 }
 
-/// A slope GP and a direct GP, each of one family: predictions cost the same whichever it is.
+/// A slope GP and a direct GP, each with one family, because the cost of predictions does not depend on the family.
 fn fitted(max_rows: usize, dim: usize) -> (SlopeFit, DirectFit) {
     let (families, hyper_rows, rows) = (vec![Family::Smooth], 200, wells(dim));
     let curl_test = CurlTest::AssumePotential;

@@ -1,4 +1,4 @@
-//! Forward kinematics and Jacobians of the 22-joint upper body, beside the same by plain `Isometry3` products.
+//! Forward kinematics and Jacobians of the 22-joint upper body, compared with plain `Isometry3` products.
 #![allow(missing_docs, clippy::unwrap_used, reason = "a benchmark that cannot start is no benchmark")]
 
 use std::hint::black_box;
@@ -13,7 +13,7 @@ use urdf_rs::JointType;
 const URDF: &str = include_str!("../../robots/asimo_upper_body.urdf");
 const HAND: &str = "l_palm";
 
-/// The upper body as one would first write it: a list of joints, a product of isometries for each.
+/// A straightforward implementation of the upper body: a list of joints, with a product of isometries for each.
 struct Plain {
     joints: Vec<PlainJoint>,
     hand: usize,
@@ -95,7 +95,7 @@ fn upper_body(criterion: &mut Criterion) {
     let mut workspace = Workspace::new();
     let mut plain = Plain::new();
 
-    // Same configurations for all, and the same result, before anybody is timed.
+    // Checks first that all give the same result on the same configurations.
     let mut rng = ChaCha8Rng::seed_from_u64(1);
     let configurations: Vec<_> = (0..64).map(|_| DVector::from_fn(n, |_, _| rng.random_range(-1.0..1.0))).collect();
     for q in &configurations {
@@ -148,7 +148,7 @@ fn upper_body(criterion: &mut Criterion) {
             black_box(&mut six);
         });
     });
-    // Times of these are of all configurations, their rates of one.
+    // Times refer to all configurations together, rates to single ones.
     group.throughput(Throughput::Elements(configurations.len() as u64));
     group.bench_function("all_links_and_jacobian_6x22_batch_of_64", |bencher| {
         bencher.iter(|| {

@@ -1,5 +1,5 @@
-//! LWPR: training sample by sample and in batch, prediction, and both in turns; d = 2, 6, 22 with a diagonal metric, 2 and 6
-//! with a full one. About two minutes.
+//! LWPR: training sample by sample and in batch, prediction, and both alternately; d = 2, 6, 22 with a diagonal metric, 2
+//! and 6 with a full one. About two minutes.
 #![allow(missing_docs, reason = "a benchmark")]
 
 use std::hint::black_box;
@@ -13,7 +13,7 @@ use rand::SeedableRng;
 use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
 
-/// Samples in random order, as training wants them.
+/// Samples in random order, as training requires.
 fn shuffled(d: usize) -> PotentialSamples {
     let mut rng = ChaCha8Rng::seed_from_u64(d as u64);
     let samples = potential_samples(d, &mut rng);
@@ -26,7 +26,7 @@ fn shuffled(d: usize) -> PotentialSamples {
     }
 }
 
-/// A model that has seen all samples once, so that its fields are all there.
+/// A model that has seen all samples once, so that it has all its receptive fields.
 fn model(samples: &PotentialSamples, metric: Metric) -> Lwpr {
     let params = LwprParams {
         metric,

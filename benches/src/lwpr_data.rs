@@ -1,4 +1,4 @@
-//! Samples of a quadratic potential along constrained movements, in as many dimensions as asked for.
+//! Samples of a quadratic potential along constrained movements, in any number of dimensions.
 
 use nalgebra::{DMatrix, DVector};
 use rand::{Rng, RngExt};
@@ -15,7 +15,7 @@ pub struct PotentialSamples {
     pub xs: DMatrix<f64>,
     /// Values of the potential (1, 10 000).
     pub ys: DMatrix<f64>,
-    /// Initial metric that suits the dimension.
+    /// Initial metric suitable for the dimension.
     pub init_d: f64,
 }
 
@@ -28,7 +28,7 @@ impl PotentialSamples {
 
 /// 100 movements of 100 samples down φ(x) = .05 |x|², each under one random constraint: ẋ = (I − aaᵀ)(−∇φ) with |a| = 1.
 ///
-/// They start uniformly in a cube of 2 (d = 2) or 3 dimensions, laid into ℝ^d by a random orthonormal basis, with noise.
+/// They start uniformly in a cube of 2 (d = 2) or 3 dimensions, embedded in ℝ^d by a random orthonormal basis, with noise.
 pub fn potential_samples(d: usize, rng: &mut impl Rng) -> PotentialSamples {
     let k = if d == 2 { 2 } else { 3 };
     let basis = DMatrix::from_fn(d, k, |_, _| rng.sample::<f64, _>(StandardNormal)).qr().q();

@@ -5,14 +5,14 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::StandardNormal;
 
-/// Three Gaussian wells in a bowl, in d dimensions: the policy is the negative slope of 0.15‖x‖² − Σ_k h_k e^{−‖x − c_k‖²/2w²}.
+/// Three Gaussian wells in a bowl, in d dimensions: the policy is the negative gradient of 0.15‖x‖² − Σ_k h_k e^{−‖x − c_k‖²/2w²}.
 #[derive(Debug)]
 pub struct Wells {
     centres: Vec<DVector<f64>>,
     depths: Vec<f64>,
 }
 
-/// w², and twice the height of the bowl at a distance of 1.
+/// w², and twice the height of the bowl at distance 1.
 const WIDTH: f64 = 0.64;
 const BOWL: f64 = 0.3;
 
@@ -36,7 +36,7 @@ impl Wells {
         wells.fold(x * -BOWL, |sum, well| sum + well)
     }
 
-    /// States at which errors are measured, uniform in [−1.5, 1.5)ⁿ, and π(x) there: (n, 500) each.
+    /// Test states, uniform in [−1.5, 1.5)ⁿ, and π(x) there: (n, 500) each.
     pub fn truth(&self) -> (DMatrix<f64>, DMatrix<f64>) {
         let mut rng = ChaCha8Rng::seed_from_u64(2);
         let states = DMatrix::from_fn(self.centres[0].len(), STATES, |_, _| rng.random_range(-1.5..1.5));
@@ -45,8 +45,8 @@ impl Wells {
     }
 }
 
-/// Movements of `samples` samples, 50 a second, as CSV with velocities: from starts uniform in [−2, 2)ⁿ, each under one plane through
-/// its start, drawn at random. Velocities have normal noise of this share of their root mean square.
+/// Writes movements of `samples` samples, 50 per second, as CSV with velocities. Starts are uniform in [−2, 2)ⁿ; each movement is
+/// constrained to a random plane through its start. Velocities have normal noise with this share of their root mean square.
 ///
 /// # Errors
 /// Those of the file.

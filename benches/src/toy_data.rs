@@ -4,8 +4,8 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::StandardNormal;
 
-/// Movements down 0.05‖x‖² from starts uniform in [−2, 2)ⁿ, one second a step, under one random constraint at a time
-/// that is drawn anew every 20 steps: the toy system (Sec. 4.1) in any number of dimensions.
+/// Movements down 0.05‖x‖² from starts uniform in [−2, 2)ⁿ, one second per step, under one random constraint at a time
+/// that is redrawn every 20 steps: the toy system (Sec. 4.1) in any number of dimensions.
 ///
 /// # Panics
 /// If there is no trajectory, no dimension, or fewer than two samples.

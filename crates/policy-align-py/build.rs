@@ -1,4 +1,5 @@
-//! On macOS an extension module is linked before there is a Python; elsewhere this says nothing.
+//! On macOS, adds the arguments for linking an extension module without a Python library; elsewhere
+//! it has no effect.
 
 fn main() {
     pyo3_build_config::add_extension_module_link_args();

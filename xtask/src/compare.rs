@@ -1,4 +1,4 @@
-//! `cargo xtask compare`: holds a run against the committed records, cell by cell.
+//! `cargo xtask compare`: compares a run with the committed records, cell by cell.
 
 use std::path::PathBuf;
 
@@ -11,10 +11,10 @@ use crate::files::relative;
 use crate::progress::say;
 use crate::run_folder::RunFolder;
 
-/// How far a mean may be from the recorded one, as a share of it: sums may be taken in another order.
+/// Largest relative difference between a mean and the recorded one; the order of summation may differ.
 const TOLERANCE: f64 = 1e-6;
 
-/// Means closer than this are the same: errors of what is recovered exactly are rounding, and of no certain size.
+/// Means closer than this are equal: if recovery is exact, the errors are rounding errors of arbitrary size.
 const ROUNDING: f64 = 1e-9;
 
 #[derive(Debug, Args)]
@@ -54,14 +54,14 @@ impl Compare {
     }
 }
 
-/// What two runs have in common and where they differ.
+/// Cells that two runs share, and their differences.
 #[derive(Debug, Default, PartialEq)]
 struct Comparison {
-    /// Cells of both.
+    /// Number of cells in both.
     cells: usize,
-    /// The largest relative difference of two means, and where it is.
+    /// The largest relative difference of two means, and its cell.
     widest: (f64, String),
-    /// Cells of this run that the other has not.
+    /// Number of cells of this run that the other lacks.
     new: usize,
     faults: Vec<String>,
 }
@@ -92,7 +92,7 @@ impl Comparison {
         self.faults.extend(gone.map(|measure| format!("{place} {}: is not there any more", measure.name())));
     }
 
-    /// Data sets that one of the two runs has more are left out; verdicts are of whole rows.
+    /// Compares the data sets that both runs have. Verdicts apply to whole rows.
     fn cell(&mut self, place: String, cell: &Cell, recorded: &Cell) {
         self.cells += 1;
         let n = cell.values.len().min(recorded.values.len());

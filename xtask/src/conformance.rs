@@ -1,4 +1,4 @@
-//! `cargo xtask conformance`: our numbers and files against reference cases of other programs.
+//! `cargo xtask conformance`: compares our numbers and files with reference cases of other programs.
 
 use std::path::PathBuf;
 

@@ -1,4 +1,4 @@
-//! Equations cited in comments must stand on the page that defines them.
+//! Checks that the page that defines equations contains those cited in comments.
 
 use std::collections::BTreeSet;
 
@@ -11,7 +11,7 @@ pub(crate) fn defined(page: &str) -> BTreeSet<&str> {
     formulas.filter_map(|line| tags(line).next().filter(|tag| line.starts_with(tag))).collect()
 }
 
-/// One fault for each tag in `source` that is not among those `defined`, with the number of its line.
+/// One fault for each tag in `source` that is not `defined`, with its line number.
 pub(crate) fn faults(source: &str, defined: &BTreeSet<&str>) -> Vec<String> {
     let lines = source.lines().zip(1..);
     let undefined = |(line, number)| {
@@ -21,7 +21,7 @@ pub(crate) fn faults(source: &str, defined: &BTreeSet<&str>) -> Vec<String> {
     lines.flat_map(undefined).collect()
 }
 
-/// Everything in `line` that looks like "(S1)" or "(R1)", parentheses included.
+/// Every tag in `line` such as "(S1)" or "(R1)", with parentheses.
 fn tags(line: &str) -> impl Iterator<Item = &str> {
     line.match_indices('(').filter_map(|(at, _)| {
         let inside = &line[at + 1..line[at..].find(')')? + at];
@@ -35,7 +35,7 @@ fn tags(line: &str) -> impl Iterator<Item = &str> {
 mod tests {
     use super::*;
 
-    /// Spelled so that this file cites nothing.
+    /// Composes a tag, so that this file cites none.
     fn tag(letter: char, number: u32) -> String {
         format!("({letter}{number})")
     }
@@ -43,7 +43,7 @@ mod tests {
     #[test]
     fn a_tag_that_the_page_does_not_define_is_refused() {
         let (first, second, cited) = (tag('S', 1), tag('R', 12), tag('S', 2));
-        // The page cites one tag in its text and within a formula, which does not define it.
+        // The page cites one tag in its text and within a formula, neither of which defines it.
         let formulas = format!("```text\n{first}  a = b, as in {cited}\n      continued\n{second}  c = d\n```");
         let page = format!("{cited} is text.\n\n{formulas}\n\n{cited} is text, too.\n");
         let defined = defined(&page);

@@ -1,4 +1,4 @@
-//! Errors in three lines, as those of `policy-align`: what is wrong, where, and what to try.
+//! Errors in three lines, as in `policy-align`: the problem, the place, and a remedy.
 
 use std::error::Error;
 use std::fmt;
@@ -6,7 +6,7 @@ use std::fmt;
 use clap::error::ErrorKind;
 use text::three_lines;
 
-/// Why a command stops.
+/// The reason why a command stops.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Failure {
     what: String,
@@ -19,7 +19,7 @@ impl Failure {
         Failure { what: what.into(), place: place.into(), remedy: remedy.into() }
     }
 
-    /// Of an error of a command: itself if it is one, else its chain of causes.
+    /// Converts an error of a command: returns a `Failure` as it is, else makes one from the chain of causes.
     pub(crate) fn of(error: &anyhow::Error, command: &str) -> Failure {
         error.downcast_ref::<Failure>().cloned().unwrap_or_else(|| {
             Failure::new(
@@ -30,7 +30,7 @@ impl Failure {
         })
     }
 
-    /// Of a command line that is not understood; none if it asks for help or the version.
+    /// Converts an error in the command line; `None` if the user asks for help or the version.
     pub(crate) fn of_usage(error: &clap::Error, command: &str) -> Option<Failure> {
         if matches!(error.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion) {
             return None;

@@ -1,17 +1,17 @@
-//! Files that programs write, and where the repository keeps its own.
+//! Writing of files, and locations of files in the repository.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use crate::failure::Failure;
 
-/// The root of the repository that the current folder is in. Not where the program was built: a copy of it, or one that
-/// several checkouts share, works on the checkout that it is called from.
+/// The root of the repository that contains the current folder. This is not the place where the program was built, so a
+/// copied program, or one that several checkouts share, works on the checkout in which it is called.
 pub(crate) fn repository() -> Result<PathBuf, Failure> {
     root_above(&std::env::current_dir().unwrap_or_default())
 }
 
-/// The nearest folder from here upwards whose `Cargo.toml` has a `[workspace]` that this program is a member of.
+/// The nearest folder from here upwards whose `Cargo.toml` has a `[workspace]` with this program as a member.
 fn root_above(folder: &Path) -> Result<PathBuf, Failure> {
     let is_root = |folder: &&Path| {
         let manifest = fs::read_to_string(folder.join("Cargo.toml")).unwrap_or_default();
@@ -28,12 +28,12 @@ fn root_above(folder: &Path) -> Result<PathBuf, Failure> {
     })
 }
 
-/// A path as one would write it in the current folder.
+/// A path relative to the current folder.
 pub(crate) fn relative(path: &Path) -> String {
     from_here(path).display().to_string()
 }
 
-/// A path as one would type it in a shell, in the current folder.
+/// A path relative to the current folder, quoted for a shell.
 pub(crate) fn typed(path: &Path) -> String {
     text::quoted(from_here(path))
 }
@@ -44,7 +44,7 @@ fn from_here(path: &Path) -> &Path {
     if path.as_os_str().is_empty() { Path::new(".") } else { path }
 }
 
-/// Writes a whole file or nothing.
+/// Writes a file atomically.
 pub(crate) fn write(path: &Path, contents: impl AsRef<[u8]>) -> anyhow::Result<()> {
     let mut draft = path.as_os_str().to_owned();
     draft.push(format!(".{}.part", std::process::id()));
@@ -71,7 +71,7 @@ mod tests {
         fs::write(root.join("Cargo.toml"), "[workspace]\nmembers = []\n").unwrap();
         fs::write(root.join("xtask/Cargo.toml"), "[package]\n").unwrap();
         fs::write(own.join("Cargo.toml"), "[package]\nname = \"a\"\n").unwrap();
-        // An example with a workspace of its own is in the repository nevertheless.
+        // An example with a separate workspace still belongs to the repository.
         fs::write(root.join("docs/example/Cargo.toml"), "[workspace]\n").unwrap();
         for folder in [root, &own, &foreign] {
             assert_eq!(root_above(folder).unwrap(), root);
@@ -82,7 +82,7 @@ mod tests {
     fn the_draft_of_another_program_is_not_in_the_way() {
         let folder = tempfile::tempdir().unwrap();
         let (path, other) = (folder.path().join("figure4.svg"), folder.path().join("figure4.svg.part"));
-        // What another program writes cannot be written over, nor renamed from under it.
+        // The draft of another program can be neither overwritten nor renamed.
         fs::create_dir(&other).unwrap();
         write(&path, "drawn").unwrap();
         assert_eq!(fs::read_to_string(&path).unwrap(), "drawn");

@@ -1,8 +1,8 @@
-//! `cargo xtask leverage`: how much hangs on what is fitted.
+//! `cargo xtask leverage`: measures the influence of the fitted settings.
 //!
-//! Every setting that the paper does not give is changed by a fifth, up and down, one at a time, on the first data sets of
-//! a seed; the printed cells whose verdict is another than at the value used are named. What texts quote of other values is
-//! measured beside.
+//! Changes every setting that the paper does not give by a fifth, up and down, one at a time, on the first data sets of
+//! a seed, and names the printed cells whose verdict changes. Also measures the results at other settings that texts
+//! quote.
 
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -24,12 +24,12 @@ use crate::progress::say;
 use crate::runner::records::{Earlier, Records};
 use crate::runner::{Plan, Work};
 
-/// What is written: what was measured, its page of documentation, and what texts quote.
+/// The output: the measurements, their page of documentation, and the values that texts quote.
 const LEVERAGE: &str = "docs/records/leverage.json";
 pub(crate) const PAGE: &str = "docs/leverage.md";
 const VARIANTS: &str = "docs/records/variants.json";
 
-/// By how much settings are changed.
+/// Factors by which settings are changed.
 const SMALLER: f64 = 0.8;
 const LARGER: f64 = 1.2;
 
@@ -46,7 +46,7 @@ pub(crate) struct Leverage {
     out: Option<PathBuf>,
 }
 
-/// What `docs/which-learner.md` quotes of Table 1's system with fewer movements.
+/// The quotes in `docs/which-learner.md` about Table 1's system with fewer movements.
 const FEW_MOVEMENTS: &str = "\
     is {movements = 10: parabola-40x40-medium nupe_fresh} with 10 movements, \
     {movements = 15: parabola-40x40-medium nupe_fresh} with 15, {movements = 20: parabola-40x40-medium nupe_fresh} with 20 and \
@@ -79,12 +79,12 @@ impl Leverage {
         Ok(())
     }
 
-    /// What texts quote of other settings.
+    /// The results at other settings that texts quote.
     fn quoted(&self, records: &Arc<Records>) -> anyhow::Result<Variants> {
         let mut variants = Variants::from_seed(self.seed);
         for experiment in registry()? {
             let text = if experiment.id == "table1" { FEW_MOVEMENTS } else { "" };
-            // Every quote of the page names its cell.
+            // Every quote of the page names its cell explicitly.
             let of_page = quotes(&(String::new(), Measure::NupeFresh), text)?;
             for (quote, cell) in experiment.explanations.quotes.iter().chain(&of_page) {
                 let is_meant = |setting: &Setting| setting.experiment == experiment.id && setting.name == quote.setting;
@@ -119,7 +119,7 @@ impl Leverage {
         Ok(result.rows.into_iter().flat_map(of_row).collect())
     }
 
-    /// The experiment at a setting's value, as far as its setups are wanted.
+    /// The result of the experiment at a setting's value, restricted to the wanted setups.
     fn result(
         &self,
         setting: &Setting,
@@ -139,7 +139,7 @@ impl Leverage {
     }
 }
 
-/// Cells whose verdict is another, from what to what.
+/// Cells whose verdict changes, with both verdicts.
 fn turned(base: &Verdicts, other: &Verdicts) -> Vec<Turned> {
     let both = base.iter().zip(other).filter(|((cell, was), (same, is))| cell == same && was != is);
     both.map(|(((row, measure), was), (_, is))| Turned { row: row.clone(), measure: *measure, was: *was, is: *is })
@@ -182,7 +182,7 @@ fn row(setting: &Setting, changed: Option<&Changed>) -> Vec<String> {
 mod tests {
     use super::*;
 
-    /// Every setting's value in use is the one that its experiment has: the same parameters, to the last digit.
+    /// Every setting's recorded value equals the experiment's: the parameters are identical to the last digit.
     #[test]
     fn what_is_said_to_be_used_is_used() {
         let experiments = registry().unwrap();

@@ -59,7 +59,7 @@ enum Command {
     Tidy,
 }
 
-/// A command line that is not understood.
+/// Exit status for an invalid command line.
 const USAGE: u8 = 2;
 
 fn main() -> ExitCode {
@@ -68,7 +68,7 @@ fn main() -> ExitCode {
         Ok(cli) => cli,
         Err(error) => {
             let Some(failure) = Failure::of_usage(&error, &command) else {
-                // clap colours it as the terminal and NO_COLOR say.
+                // clap applies colours according to the terminal and NO_COLOR.
                 let _ = error.print();
                 return ExitCode::SUCCESS;
             };

@@ -1,4 +1,5 @@
-//! `cargo xtask notices`: the licences of what is linked into the Python package, for its wheels and source archive.
+//! `cargo xtask notices`: collects the licences of the crates that are linked into the Python package, for its wheels and
+//! source archive.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
@@ -18,24 +19,25 @@ const PACKAGE: &str = "policy-align-py";
 /// Matches the pattern of `license-files` in the package's `pyproject.toml`; not committed.
 const FILE: &str = "crates/policy-align-py/LICENSE-THIRD-PARTY";
 
-/// How names of files with terms begin, in a crate's root.
+/// Prefixes of the names of licence files in a crate's root.
 const IN_ROOT: [&str; 6] = ["LICENSE", "LICENCE", "UNLICENSE", "COPYING", "COPYRIGHT", "NOTICE"];
 
-/// The same below it, where libraries in C are. No COPYING: that of zstd is the GPL, the alternative to its LICENSE.
+/// Prefixes of licence files in subfolders, which contain C libraries. COPYING is not included: zstd's is the GPL, the
+/// alternative to its LICENSE.
 const BELOW: [&str; 2] = ["LICENSE", "LICENCE"];
 
-/// What `cargo metadata` says of a package.
+/// A package in the output of `cargo metadata`.
 #[derive(Debug, Clone, Deserialize)]
 struct Package {
     name: String,
     version: String,
-    /// An SPDX expression.
+    /// The licence as an SPDX expression.
     license: Option<String>,
     repository: Option<String>,
     #[serde(default)]
     authors: Vec<String>,
     manifest_path: PathBuf,
-    /// None for crates of this repository.
+    /// `None` for crates of this repository.
     source: Option<String>,
 }
 
@@ -44,8 +46,8 @@ impl Package {
         format!("{} {}", self.name, self.version)
     }
 
-    /// The texts of its files with terms, in the order of their paths. A crate under MIT without any has the standard
-    /// text, with its authors; for other licences that is an error.
+    /// The texts of its licence files, in the order of their paths. A crate under MIT without such files gets the
+    /// standard text, with its authors; other licences without files are an error.
     fn texts(&self) -> anyhow::Result<Vec<String>> {
         let folder = self.manifest_path.parent().context("a manifest is in a folder")?;
         let mut paths = Vec::new();
@@ -77,7 +79,7 @@ impl Package {
     }
 }
 
-/// The MIT licence below its line with the holders.
+/// The MIT licence without the line of its copyright holders.
 const MIT: &str = "\
 Permission is hereby granted, free of charge, to any person obtaining a copy of this software and associated documentation files
 (the \"Software\"), to deal in the Software without restriction, including without limitation the rights to use, copy, modify, merge,
@@ -92,7 +94,7 @@ FOR ANY CLAIM, DAMAGES OR OTHER LIABILITY, WHETHER IN AN ACTION OF CONTRACT, TOR
 WITH THE SOFTWARE OR THE USE OR OTHER DEALINGS IN THE SOFTWARE.
 ";
 
-/// Writes the file, of the crates that are linked on this machine's platform.
+/// Writes the file, for the crates that are linked on this machine's platform.
 pub(crate) fn execute() -> anyhow::Result<()> {
     let root = repository()?;
     let packages = linked(&root)?;
@@ -102,7 +104,8 @@ pub(crate) fn execute() -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Third-party crates that end up in the library, by name and version: no macros, and nothing that builds or tests alone.
+/// Third-party crates that are linked into the library, by name and version. Excludes macros, and crates used only for
+/// building or testing.
 fn linked(root: &Path) -> anyhow::Result<Vec<Package>> {
     #[derive(Deserialize)]
     struct Metadata {
@@ -112,7 +115,7 @@ fn linked(root: &Path) -> anyhow::Result<Vec<Package>> {
         root,
         &["tree", "--package", PACKAGE, "--edges", "normal,no-proc-macro", "--prefix", "none", "--format", "{p}"],
     )?;
-    // A line is `name vVERSION`, with a folder, or a mark where it was shown before.
+    // A line is `name vVERSION`, followed by a folder, or by a mark if it was already listed.
     let titles: BTreeSet<String> = tree
         .lines()
         .filter_map(|line| line.split_once(" v"))
@@ -137,7 +140,7 @@ fn cargo(root: &Path, arguments: &[&str]) -> anyhow::Result<String> {
     Err(Failure::new(what, format!("cargo {} --locked", arguments.join(" ")), "cargo fetch --locked").into())
 }
 
-/// Adds the files whose names begin as terms do, here and below.
+/// Adds the files in this folder and below whose names begin with a licence prefix.
 fn terms(folder: &Path, beginnings: &[&str], found: &mut Vec<PathBuf>) -> anyhow::Result<()> {
     for entry in fs::read_dir(folder).with_context(|| format!("cannot list {}", folder.display()))? {
         let entry = entry?;
@@ -153,13 +156,13 @@ fn terms(folder: &Path, beginnings: &[&str], found: &mut Vec<PathBuf>) -> anyhow
     Ok(())
 }
 
-/// A text whose line ends and empty margins are always the same, so that equal terms are found.
+/// Normalises line ends and blank margins, so that equal texts are recognised.
 fn normal(text: &str) -> String {
     let lines: Vec<&str> = text.lines().map(str::trim_end).collect();
     lines.join("\n").trim_matches('\n').to_owned() + "\n"
 }
 
-/// The list of crates, then every text once, with the crates that it is of, in the order of the first of them.
+/// The list of crates, then every text once with the crates that use it, in the order of the first crate.
 fn notices(packages: &[Package]) -> anyhow::Result<String> {
     let mut order: Vec<String> = Vec::new();
     let mut crates_of: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();

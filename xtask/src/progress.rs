@@ -1,4 +1,4 @@
-//! Progress on standard error: a bar with the time left on a terminal, plain lines elsewhere.
+//! Progress on standard error: a bar with the remaining time on a terminal, plain lines elsewhere.
 
 use std::io::{IsTerminal as _, Write as _};
 use std::sync::Mutex;
@@ -7,13 +7,13 @@ use std::time::{Duration, Instant};
 
 use indicatif::{HumanDuration, ProgressBar, ProgressStyle};
 
-/// How often a plain line is written at most.
+/// Shortest interval between plain lines.
 const LINE_INTERVAL: Duration = Duration::from_secs(5);
 
-/// Columns of a terminal.
+/// Width of a terminal, columns.
 const WIDTH: usize = 80;
 
-/// Counts finished data sets and the work they stand for.
+/// Counts finished data sets and their work.
 pub(crate) struct Progress {
     display: Display,
 }
@@ -33,7 +33,7 @@ struct Lines {
 }
 
 impl Progress {
-    /// Starts counting `jobs` of altogether `total` data sets, the others being finished already.
+    /// Starts counting `jobs` of altogether `total` data sets; the others are already finished.
     pub(crate) fn start(total: usize, jobs: usize, work: u64) -> Progress {
         if jobs < total {
             say(&format!("{} of {total} data sets were finished by earlier runs, {jobs} to go", total - jobs));
@@ -50,12 +50,12 @@ impl Progress {
         Progress { display: Display::Bar(bar) }
     }
 
-    /// A data set is done.
+    /// Counts a finished data set.
     pub(crate) fn finished(&self, experiment: &str, row: &str, work: u64) {
         match &self.display {
             Display::Bar(bar) => {
                 bar.inc(work);
-                // Before the first data set nothing is known of the time left.
+                // Before the first data set the remaining time is unknown.
                 bar.set_message(format!(", {} left  {experiment} {row}", HumanDuration(bar.eta())));
             }
             Display::Lines(lines) => {
@@ -70,7 +70,7 @@ impl Progress {
         }
     }
 
-    /// All data sets are done.
+    /// Finishes the display.
     pub(crate) fn done(&self) {
         if let Display::Bar(bar) = &self.display {
             bar.finish_and_clear();
@@ -90,7 +90,7 @@ impl Lines {
     }
 }
 
-/// Writes lines to standard error, on a terminal folded at its usual width; a closed standard error stops nothing.
+/// Writes lines to standard error, folded to the usual width on a terminal. A closed standard error is ignored.
 pub(crate) fn say(text: &str) {
     let mut stderr = std::io::stderr();
     let text = text::plain(text);
@@ -98,7 +98,7 @@ pub(crate) fn say(text: &str) {
     let _ = writeln!(stderr, "{text}");
 }
 
-/// Lines of at most 80 columns, broken between words; what goes on is indented as its line.
+/// Breaks lines between words at 80 columns; continuation lines keep the indentation.
 fn folded(text: &str) -> String {
     text.lines().map(folded_line).collect::<Vec<_>>().join("\n")
 }

@@ -1,4 +1,4 @@
-//! `cargo xtask report`: draws the figures of a finished run and writes its report, from what the run left behind.
+//! `cargo xtask report`: draws the figures of a finished run and writes its report, from the run's files.
 
 use std::path::PathBuf;
 
@@ -39,7 +39,7 @@ impl Report {
         Ok(())
     }
 
-    /// What to read.
+    /// The folder to read.
     fn from(&self) -> Result<RunFolder, Failure> {
         if let Some(from) = &self.from {
             return Ok(RunFolder::at(from));
@@ -52,7 +52,7 @@ impl Report {
         RunFolder::committed(1)
     }
 
-    /// Where to write.
+    /// The folder to write.
     fn out(&self, from: &RunFolder) -> Result<RunFolder, Failure> {
         Ok(match &self.out {
             Some(out) => RunFolder::at(out),
@@ -62,13 +62,13 @@ impl Report {
     }
 }
 
-/// What to look at.
+/// Names the files to open.
 pub(crate) fn written(out: &RunFolder) -> String {
     let [page, text, figures] = ["report.html", "report.md", "figures"].map(|name| relative(&out.join(name)));
     format!("written: {page} (open it in a browser),\n         {text}, {figures}")
 }
 
-/// What cannot be drawn, and what to do about it.
+/// Names the figures that cannot be drawn, and the remedy.
 fn missing(sources: &Sources, from: &RunFolder) -> String {
     let ids = |figures: &[Figure]| figures.iter().map(|figure| figure.id).collect::<Vec<_>>().join(", ");
     let (undrawn, in_part) = (undrawn(sources), drawn_in_part(sources));
@@ -84,7 +84,7 @@ fn missing(sources: &Sources, from: &RunFolder) -> String {
     )
 }
 
-/// The committed results of a seed other than this run's, to hold beside it; none for a quick run.
+/// The committed results of a different seed, for comparison; `None` for a quick run.
 fn results_of_another_seed(results: &Results) -> Option<Results> {
     let other = RunFolder::committed(if results.seed == 2 { 1 } else { 2 }).ok()?;
     if results.quick || !other.is_finished() {

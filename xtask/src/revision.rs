@@ -1,13 +1,13 @@
-//! Which code it is that runs.
+//! The revision of the running code.
 
 use std::path::Path;
 use std::process::Command;
 
-/// The commit that is checked out in `folder`, with `-dirty` where tracked files differ from it; none where there is no
-/// git or `folder` is not the root of a checkout, as in an unpacked archive.
+/// The commit that is checked out in `folder`, with `-dirty` if tracked files differ from it; `None` without git, or if
+/// `folder` is not the root of a checkout, as in an unpacked archive.
 ///
-/// Asked when a run begins and not when the program is built: a program that holds its commit would be another with
-/// every commit, and what an unchanged program finished would be lost.
+/// It is determined when a run begins, not when the program is built. If the program contained its commit, every commit would
+/// change the program and invalidate the finished data sets.
 pub(crate) fn revision(folder: &Path) -> Option<String> {
     let git = |arguments: &[&str]| {
         let output =
@@ -15,7 +15,7 @@ pub(crate) fn revision(folder: &Path) -> Option<String> {
         let text = String::from_utf8(output.stdout).ok()?;
         output.status.success().then(|| text.trim().to_owned())
     };
-    // Empty in the root alone: a folder within somebody else's checkout has no revision of its own.
+    // Empty only in the root: a folder within another checkout has no separate revision.
     let below_root = git(&["rev-parse", "--show-prefix"])?;
     below_root.is_empty().then(|| git(&["describe", "--always", "--dirty", "--abbrev=40", "--exclude=*"]))?
 }
@@ -38,7 +38,7 @@ mod tests {
         let folder = folder.path();
         assert_eq!(revision(folder), None);
         if Command::new("git").arg("--version").output().is_err() {
-            return; // The project needs no git.
+            return; // The project does not require git.
         }
         fs::create_dir(folder.join("inner")).unwrap();
         fs::write(folder.join("inner/file"), "a").unwrap();

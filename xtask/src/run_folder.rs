@@ -1,4 +1,4 @@
-//! The folder of a run: what is written there, and read again by whoever draws or publishes it.
+//! The folder of a run: its files are written there, and read again for drawing and publishing.
 
 use std::ffi::OsStr;
 use std::fs;
@@ -13,33 +13,33 @@ use serde_json::Value;
 use crate::failure::Failure;
 use crate::files::{relative, repository, typed, write};
 
-/// A folder that a run writes to.
+/// A folder for the files of a run.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct RunFolder(PathBuf);
 
 impl RunFolder {
-    /// A folder that may not be there yet.
+    /// A folder, which need not exist yet.
     pub(crate) fn at(path: &Path) -> RunFolder {
         RunFolder(path.to_owned())
     }
 
-    /// Where runs go unless told otherwise.
+    /// The default folder of runs.
     pub(crate) fn of_latest_run() -> Result<RunFolder, Failure> {
         Ok(RunFolder(repository()?.join("target/reproduce")))
     }
 
-    /// The committed run from a seed.
+    /// The folder of the committed run with a seed.
     pub(crate) fn committed(seed: u64) -> Result<RunFolder, Failure> {
         Ok(RunFolder(repository()?.join(format!("docs/records/seed-{seed}"))))
     }
 
-    /// Whether it is one of the committed ones.
+    /// Whether it is one of the committed runs.
     pub(crate) fn is_committed(&self) -> bool {
         let all = repository().ok().and_then(|root| root.join("docs/records").canonicalize().ok());
         matches!((self.0.canonicalize(), all), (Ok(folder), Some(all)) if folder.starts_with(&all))
     }
 
-    /// Whether a run ended there.
+    /// Whether it contains a finished run.
     pub(crate) fn is_finished(&self) -> bool {
         self.results_path().exists()
     }
@@ -49,7 +49,7 @@ impl RunFolder {
         self.0.join(name)
     }
 
-    /// Makes the folder, and in it the one of the figures.
+    /// Creates the folder with its subfolder for figures.
     pub(crate) fn make(&self) -> anyhow::Result<()> {
         let figures = self.figures();
         fs::create_dir_all(&figures).with_context(|| format!("cannot make the folder {}", relative(&figures)))
@@ -67,8 +67,7 @@ impl RunFolder {
         self.figures().join(format!("{id}.json"))
     }
 
-    /// Writes what a run ends with: its results, and what its figures are drawn from. Figure data of an earlier run do
-    /// not stay beside the results of this one.
+    /// Writes the results of a run and its figure data. Removes the figure data of earlier runs that this one lacks.
     pub(crate) fn keep(&self, Sources { results, documents: kept, .. }: &Sources) -> anyhow::Result<()> {
         self.make()?;
         for document in documents().iter().filter(|document| !kept.contains_key(document.id)) {
@@ -78,7 +77,7 @@ impl RunFolder {
         write(&self.results_path(), results.json()?)
     }
 
-    /// What to type for the same run again, into the same folder.
+    /// The command that repeats the run in the same folder.
     pub(crate) fn command(&self, results: &Results) -> String {
         let command = &results.run.command;
         if RunFolder::of_latest_run().is_ok_and(|latest| *self == latest) {
@@ -88,7 +87,7 @@ impl RunFolder {
         }
     }
 
-    /// Reads what a run ended with.
+    /// Reads the results and the figure data.
     pub(crate) fn sources(&self) -> anyhow::Result<Sources> {
         let document = |id: &str| {
             let path = self.document_path(id);
@@ -109,13 +108,13 @@ impl RunFolder {
         read_results(&self.results_path()).map_err(|error| Failure::new(format!("{error:#}"), place, again).into())
     }
 
-    /// Takes away the page and the pictures of an earlier run.
+    /// Removes the page and the pictures of an earlier run.
     pub(crate) fn forget_report(&self) -> anyhow::Result<()> {
         remove(&self.join("report.html"))?;
         figures().iter().try_for_each(|figure| self.forget(figure))
     }
 
-    /// Takes away what an earlier run drew of a figure.
+    /// Removes the drawings of a figure from an earlier run.
     pub(crate) fn forget(&self, figure: &Figure) -> anyhow::Result<()> {
         let folder = self.figures();
         let entries = fs::read_dir(&folder).with_context(|| format!("cannot read the folder {}", relative(&folder)))?;
@@ -145,7 +144,7 @@ fn read_document(path: &Path) -> anyhow::Result<Value> {
     Ok(serde_json::from_str(&text).map_err(|error| refused(format!("damaged: {error}")))?)
 }
 
-/// Removes a file that may not be there.
+/// Removes a file if it exists.
 fn remove(path: &Path) -> anyhow::Result<()> {
     match fs::remove_file(path) {
         Err(error) if error.kind() != ErrorKind::NotFound => {

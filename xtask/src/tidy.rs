@@ -13,19 +13,19 @@ use crate::files::repository;
 use crate::progress::say;
 use crate::sources::{Source, circles, product_lines};
 
-/// Names that say nothing about what is inside.
+/// Names that do not describe the contents.
 const EMPTY_NAMES: [&str; 4] = ["utils", "common", "helpers", "prelude"];
 
-/// Files beyond which a folder of sources is no longer read at a glance.
+/// Largest number of files in a source folder that remains easy to survey.
 const MOST_FILES: usize = 15;
 
-/// Lines beyond which a source file holds more than one idea.
+/// Largest number of lines of a source file, which should contain one idea.
 const LONGEST_FILE: usize = 300;
 
-/// Crates that only the paper needs.
+/// Folder of the crates that only the paper needs.
 const PAPER: &str = "crates/paper";
 
-/// What a crate's `[dependencies]` may name.
+/// Dependencies that a crate's `[dependencies]` may name.
 #[derive(Debug, Deserialize)]
 struct Allowed {
     siblings: Vec<String>,
@@ -34,17 +34,17 @@ struct Allowed {
 
 #[derive(Debug, Deserialize)]
 struct Manifest {
-    /// Of its folder, which is also what dependants call it.
+    /// Name of its folder, which dependants also use.
     #[serde(skip)]
     name: String,
     #[serde(flatten)]
     tables: Tables,
-    /// Tables for single platforms.
+    /// Tables of specific platforms.
     #[serde(default)]
     target: BTreeMap<String, Tables>,
 }
 
-/// What a crate is built with.
+/// Dependencies for building a crate.
 #[derive(Debug, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 struct Tables {
@@ -55,7 +55,7 @@ struct Tables {
 }
 
 impl Manifest {
-    /// Every crate that it names, but for tests.
+    /// All crates that it names, except for tests.
     fn dependencies(&self) -> BTreeSet<&str> {
         let tables = self.target.values().chain([&self.tables]);
         let names = tables.flat_map(|tables| tables.dependencies.keys().chain(tables.build_dependencies.keys()));
@@ -63,7 +63,7 @@ impl Manifest {
     }
 }
 
-/// Fails with a list of everything that breaks the rules.
+/// Fails with a list of all violations of the rules.
 pub(crate) fn execute() -> anyhow::Result<()> {
     let root = repository()?;
     let mut faults = Vec::new();
@@ -103,7 +103,7 @@ pub(crate) fn execute() -> anyhow::Result<()> {
     Err(Failure::new(format!("{} fault(s)", faults.len()), "the workspace", remedy).into())
 }
 
-/// Folders with a manifest: crates for users, those for the paper alone, and the programs beside them.
+/// Folders with a manifest: crates for users, those for the paper, and the additional programs.
 fn package_folders(root: &Path) -> anyhow::Result<Vec<PathBuf>> {
     let mut folders = entries(&root.join("crates"))?;
     if root.join(PAPER).exists() {
@@ -129,7 +129,7 @@ fn is_of_paper(folder: &Path) -> bool {
     folder.ends_with("xtask") || folder.parent().is_some_and(|above| above.ends_with(PAPER))
 }
 
-/// What a user gets must not need what only the paper needs.
+/// Crates for users must not depend on crates for the paper.
 fn wing_faults(folders: &[PathBuf], manifests: &[Manifest]) -> Vec<String> {
     let (paper, users): (Vec<_>, Vec<_>) = folders.iter().zip(manifests).partition(|(folder, _)| is_of_paper(folder));
     let users = users.into_iter().filter(|(folder, _)| !folder.ends_with("benches"));
@@ -143,7 +143,7 @@ fn wing_faults(folders: &[PathBuf], manifests: &[Manifest]) -> Vec<String> {
     users.flat_map(fault).collect()
 }
 
-/// How many lines of product code there are for whom.
+/// Formats the numbers of lines of product code for users and for the paper.
 fn lines_in_words(users: usize, paper: usize) -> String {
     format!(
         "tidy: lines of product code, without tests\n{users:>8} crates: what a user gets\n\
@@ -152,7 +152,7 @@ fn lines_in_words(users: usize, paper: usize) -> String {
     )
 }
 
-/// All Rust files below `folder`, parsed, with their paths from there.
+/// All Rust files below `folder`, parsed, with relative paths.
 fn sources(folder: &Path) -> anyhow::Result<Vec<Source>> {
     let mut sources = Vec::new();
     let mut next = vec![folder.to_owned()];
@@ -189,7 +189,8 @@ fn dependency_faults(manifest: &Manifest, allowed: &BTreeMap<String, Allowed>) -
     named.iter().copied().filter_map(fault).chain(unused).chain(twice).collect()
 }
 
-/// Where the tests of a crate are one program, files of tests that neither this nor the manifest names would never run.
+/// If the tests of a crate are one program, test files that neither this program nor the manifest names would never
+/// run.
 fn forgotten_tests(folder: &Path) -> anyhow::Result<Vec<String>> {
     let program = folder.join("tests/all.rs");
     if !program.exists() {
@@ -232,7 +233,7 @@ fn source_faults(folder: &Path, equations: &BTreeSet<&str>, faults: &mut Vec<Str
             }
             let unsafe_allowed = text.lines().any(|line| is_attribute(line) && line.contains("unsafe_code"));
             let may = |part: &str| stem == part || path.components().any(|component| component.as_os_str() == part);
-            // A counting allocator, in a test, cannot be written without.
+            // A counting allocator, in a test, requires unsafe code.
             if unsafe_allowed && !may("simd") && !may("tests") {
                 faults.push(format!("{}: unsafe code belongs in a module named simd", path.display()));
             }
@@ -241,7 +242,7 @@ fn source_faults(folder: &Path, equations: &BTreeSet<&str>, faults: &mut Vec<Str
     Ok(())
 }
 
-/// Lines up to a module of tests that stands in the file; one that is only declared does not end what is counted.
+/// Number of lines before an inline module of tests; a module that is only declared does not end the count.
 fn lines_before_tests(text: &str) -> usize {
     let lines: Vec<&str> = text.lines().collect();
     let is_test_module = |pair: &[&str]| {

@@ -1,4 +1,4 @@
-//! `cargo xtask conformance` as a user meets it: what is compared, and what is not.
+//! `cargo xtask conformance` from a user's point of view: compared and skipped files.
 
 #![allow(clippy::unwrap_used)]
 
@@ -6,7 +6,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-/// One covariance: of the block `Linear`, at one place.
+/// One covariance: of the block `Linear`, at one state.
 const KERNELS: &str = r#"[{"kind": "kernels", "z": [[0.0]], "n": [[1.0]], "z2": [[0.0]], "n2": [[1.0]],
     "blocks": [{"block": "Linear", "scale": 1.0, "slope_slope": [[1.0]], "policy_slope": [[[1.0]]]}]}]"#;
 

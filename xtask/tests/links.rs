@@ -1,4 +1,4 @@
-//! Links between the committed pages of documentation lead somewhere: to a file that there is, and to a heading or an anchor in it.
+//! Links in the committed documentation are valid: the file exists, and contains the heading or anchor.
 
 #![allow(clippy::unwrap_used)]
 
@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Folders without pages of the project.
+/// Folders without documentation of the project.
 const PASSED_OVER: [&str; 4] = ["target", ".git", "node_modules", ".venv"];
 
 #[test]
@@ -30,7 +30,7 @@ fn dead_links_are_found() {
     assert_eq!(dead, [format!("{}: b.md", page.display()), format!("{}: #d", page.display())]);
 }
 
-/// All pages below a folder, each where it stands and not where a link repeats it.
+/// All pages below a folder, without symbolic links.
 fn find(folder: &Path, pages: &mut Vec<PathBuf>) {
     for entry in fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
@@ -43,7 +43,7 @@ fn find(folder: &Path, pages: &mut Vec<PathBuf>) {
     }
 }
 
-/// The links of a page that lead nowhere, each after its page.
+/// The dead links of a page, each with the page's path.
 fn dead_links(page: &Path) -> Vec<String> {
     let text = fs::read_to_string(page).unwrap();
     let folder = page.parent().unwrap();
@@ -60,7 +60,7 @@ fn dead_links(page: &Path) -> Vec<String> {
     links.filter(leads_nowhere).map(|link| format!("{}: {link}", page.display())).collect()
 }
 
-/// A text without its code.
+/// Removes code from a text.
 fn prose(text: &str) -> String {
     let mut in_code = false;
     let mut prose = String::new();
@@ -75,13 +75,13 @@ fn prose(text: &str) -> String {
     prose
 }
 
-/// What stands between "](" and ")".
+/// The link targets, between "](" and ")".
 fn links(prose: &str) -> impl Iterator<Item = &str> {
     let ends = prose.split("](").skip(1).filter_map(|rest| rest.split_once(')'));
     ends.map(|(link, _)| link.trim_matches(['<', '>']))
 }
 
-/// Names that a link into a page may end with: of its headings, as GitHub makes them, and of its anchors.
+/// The fragments of valid links into a page: of its headings, in GitHub's form, and of its anchors.
 fn anchors(text: &str) -> BTreeSet<String> {
     let mut in_code = false;
     let mut anchors = BTreeSet::new();

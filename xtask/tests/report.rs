@@ -1,4 +1,4 @@
-//! `cargo xtask report` on folders in every state: whole, of two runs, incomplete, damaged, empty.
+//! `cargo xtask report` on folders in different states: complete, with two runs, incomplete, damaged, empty.
 
 #![allow(clippy::unwrap_used)]
 
@@ -11,7 +11,7 @@ fn xtask(folder: &Path, arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_xtask")).current_dir(folder).args(arguments).output().unwrap()
 }
 
-/// What a command that is to succeed says on standard error.
+/// Standard error of a command that must succeed.
 fn said(folder: &Path, arguments: &[&str]) -> String {
     let output = xtask(folder, arguments);
     let said = String::from_utf8(output.stderr).unwrap();
@@ -19,14 +19,14 @@ fn said(folder: &Path, arguments: &[&str]) -> String {
     said
 }
 
-/// Why a report of `run` in this folder cannot be had.
+/// The error message for a report of `run` in this folder.
 fn refused(folder: &Path) -> String {
     let output = xtask(folder, &["report", "--from", "run"]);
     assert!(!output.status.success());
     String::from_utf8(output.stderr).unwrap()
 }
 
-/// A run of one row, with its figures.
+/// Makes a run of one row, with its figures.
 fn reproduce(folder: &Path, row: &str) {
     said(folder, &["reproduce", "--out", "run", "--only", row, "--data-sets", "1"]);
 }
@@ -80,7 +80,7 @@ fn what_is_missing_is_said_and_not_drawn() {
     );
 }
 
-/// Every file in a folder and the folders in it, by its path.
+/// The contents of all files in a folder and its subfolders, by path.
 fn files(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     let entries = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
     let (folders, files): (Vec<_>, Vec<_>) = entries.partition(|path| path.is_dir());
@@ -88,7 +88,8 @@ fn files(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     files.chain(folders.iter().flat_map(|folder| self::files(folder))).collect()
 }
 
-/// Each writes every file whole, to a name of its own first: whoever comes last, the report is one.
+/// Each process writes every file completely, under a temporary name, so that the last one wins with a consistent
+/// report.
 #[test]
 fn reports_into_one_folder_at_the_same_time_leave_a_whole_one() {
     let folder = tempfile::tempdir().unwrap();
@@ -165,7 +166,7 @@ fn a_run_that_left_its_figures_out_leaves_none_of_an_earlier_one() {
     assert!(!folder.path().join("elsewhere/results.json").exists());
 }
 
-/// Older runs know nothing of the movements that were shown from all sides.
+/// Older runs lack the movements with demonstrations from all sides.
 #[test]
 fn a_figure_that_is_drawn_in_part_is_named() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,4 +1,5 @@
-//! `cargo xtask reproduce` as a user meets it: the same bits at any number of threads, after a kill, and for a part.
+//! `cargo xtask reproduce` from a user's point of view: identical bits with any number of threads, after a kill, and
+//! for a part.
 
 #![allow(clippy::unwrap_used)]
 
@@ -23,14 +24,14 @@ fn run(out: &Path, arguments: &[&str]) -> Output {
     output
 }
 
-/// The results without the one object that tells of the run itself.
+/// The results without the object that describes the run itself.
 fn results(out: &Path) -> Value {
     let mut results: Value = serde_json::from_slice(&fs::read(out.join("results.json")).unwrap()).unwrap();
     assert!(results.as_object_mut().unwrap().remove("run").is_some());
     results
 }
 
-/// Finished data sets: the first line of the records says what they are.
+/// Number of finished data sets; the first line of the records is a header.
 fn lines(out: &Path) -> usize {
     fs::read_to_string(out.join("records.jsonl")).map_or(0, |text| text.lines().count().saturating_sub(1))
 }
@@ -144,7 +145,7 @@ fn a_changed_digit_is_measured_again() {
     assert_eq!(results(folder.path()), before);
 }
 
-/// `/dev/full` takes nothing.
+/// Every write to `/dev/full` fails.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_full_standard_output_loses_no_results() {
@@ -159,7 +160,7 @@ fn a_full_standard_output_loses_no_results() {
     assert!(folder.path().join("report.md").exists());
 }
 
-/// Whatever started the tests may have signals ignored, which a program inherits: `env` undoes it.
+/// The process that started the tests may ignore signals, which a program inherits; `env` restores them.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_run_that_is_told_to_stop_says_what_is_kept() {
@@ -216,7 +217,7 @@ fn usage_errors_have_three_lines_and_their_exit_code() {
     }
 }
 
-/// A program that is built once and called in several checkouts reads and writes where it is called.
+/// A program that is built once and called in several checkouts reads and writes in the current checkout.
 #[test]
 fn the_repository_is_where_the_command_is_called() {
     let folder = tempfile::tempdir().unwrap();
@@ -259,7 +260,7 @@ fn the_committed_records_are_of_this_code() {
         let found = list.as_array().unwrap().iter().find(|entry| entry["id"] == *id);
         found.unwrap_or_else(|| panic!("docs/records has no {id}")).clone()
     };
-    // Form 2 knows no held-out samples of discarded movements: its baseline learnt from them.
+    // Schema 2 has no held-out samples of discarded movements: its baseline learnt from them.
     let unknown = |row: &Value, name: &str| committed["schema"] == 2 && (row == "naive" || name.ends_with("_all"));
     let mut compared = 0;
     for experiment in ours["experiments"].as_array().unwrap() {
@@ -270,7 +271,7 @@ fn the_committed_records_are_of_this_code() {
                 if unknown(&row["id"], name) {
                     continue;
                 }
-                // As printed: the last digits may be the machine's.
+                // Compares a few digits, because the last ones may depend on the machine.
                 let [now, then] = [&cell["values"][0], &measures[name]["values"][0]].map(|v| v.as_f64().unwrap());
                 let place = format!("{} {} {name}", experiment["id"], row["id"]);
                 assert!((now - then).abs() <= 1e-3 * then.abs(), "{place}: {now}, docs/records has {then}");
@@ -304,7 +305,7 @@ fn shards_are_merged_to_the_run_that_they_share() {
     assert!(!done && said.contains("2 of 7 data sets are missing"), "{said}");
     assert!(said.contains("shard 2/3 is not among the folders") && said.contains("--shard 2/3"), "{said}");
 
-    // One digit of the third shard is damaged.
+    // Damages one digit of the third shard.
     let records = shard(3).join("records.jsonl");
     let sound = fs::read_to_string(&records).unwrap();
     fs::write(&records, sound.replacen("\"nupe\":0.", "\"nupe\":1.", 1)).unwrap();

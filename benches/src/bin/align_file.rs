@@ -1,7 +1,7 @@
-//! Aligns the trajectories of one file and prints, as JSON, what was found and how long it took: the other side of
+//! Aligns the trajectories of one file and prints the result and its time as JSON: the counterpart of
 //! `benches/peers/compare_align.py`.
 //!
-//! The file holds one line `trajectories samples dimensions repetitions bandwidth` and then all states as
+//! The file contains one line `trajectories samples dimensions repetitions bandwidth` and then all states as
 //! little-endian f64, one after the other.
 
 use std::fs;
@@ -18,7 +18,7 @@ fn main() {
     let learner = PolicyAlign { bandwidth, ..PolicyAlign::default() };
     let (mut wall, mut cpu, mut last) = (f64::INFINITY, f64::INFINITY, None);
     for _ in 0..repetitions.max(1) {
-        drop(last.take()); // Results of two repetitions are never in memory together.
+        drop(last.take()); // Frees the result, so that two repetitions are never in memory together.
         let (started, cpu_before) = (Instant::now(), cpu_seconds());
         last = Some(learner.align(std::hint::black_box(&demonstrations)).expect("the data can be aligned"));
         wall = wall.min(started.elapsed().as_secs_f64());
@@ -48,7 +48,7 @@ fn read(path: &str) -> (Demonstrations, Bandwidth, usize) {
     (demonstrations, bandwidth, number(3))
 }
 
-#[allow(clippy::print_stdout)] // Its output is what it is for.
+#[allow(clippy::print_stdout)] // This program prints its results.
 fn print_json(aligned: &Aligned, wall: f64, cpu: f64) {
     println!(
         "{{\"wall\":{wall:e},\"cpu\":{cpu:e},\"peak_megabytes\":{},\"sigma_squared\":{:e},\"lambda_2\":{:e},\"kept\":{:?},\"offsets\":{:?},\"linear\":{:?},\"laplacian\":{:?}}}",

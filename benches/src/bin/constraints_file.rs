@@ -1,12 +1,13 @@
-//! Writes one data set of a generator of `demo_gen::tasks` and what the slope GP makes of it, as JSON: the other side of
+//! Writes one data set of a generator of `demo_gen::tasks` and the slope GP's results on it, as JSON: the counterpart of
 //! `benches/peers/compare_constraints.py`.
 //!
-//! usage: constraints_file GENERATOR SET DECIBELS \[ROWS\], with GENERATOR one of cycle, cycle-task, wiping, wiping-flat; DECIBELS the ratio of signal
-//! to noise of the velocities, or `none`; ROWS the program's --max-rows, by default 400.
+//! usage: constraints_file GENERATOR SET DECIBELS \[ROWS\], with GENERATOR one of cycle, cycle-task, wiping, wiping-flat; DECIBELS the
+//! signal-to-noise ratio of the velocities, or `none`; ROWS the program's --max-rows, by default 400.
 //!
-//! A list holds samples one after the other. `states`, `velocities` and, of an arm, `jacobians` (6 rows of n), `positions` and `tool_axes` are of the
-//! movements, all of them `samples` long. `test_states` and `test_actions` are true states of movements that are not learnt from, and the policy
-//! there; `ours` is the policy of the slope GP, `ours_with_robot` the one that it learns where the arm's Jacobians are known; `…_facts` say how.
+//! A list contains samples one after the other. `states`, `velocities` and, for an arm, `jacobians` (6 rows of n), `positions` and
+//! `tool_axes` belong to the training movements, each with `samples` samples. `test_states` and `test_actions` are true states of
+//! held-out movements, and the policy there. `ours` is the policy of the slope GP, `ours_with_robot` the one that it learns with
+//! the arm's Jacobians; `…_facts` describe both fits.
 
 use demo_gen::tasks::{Contact, CyclesWithTask, Wiping};
 use demo_gen::{Recording, demonstrations, with_velocity_noise};
@@ -19,10 +20,10 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use serde_json::{Map, Value, json};
 
-/// Movements at the end that nobody learns from.
+/// Number of held-out movements at the end.
 const FRESH: usize = 20;
 
-#[allow(clippy::print_stdout)] // Its output is what it is for.
+#[allow(clippy::print_stdout)] // This program prints its results.
 fn main() {
     let words: Vec<String> = std::env::args().skip(1).collect();
     let [generator, set, decibels, rest @ ..] = &words[..] else {
@@ -82,7 +83,7 @@ fn record(generator: &str, rng: &mut ChaCha8Rng) -> (Vec<Recording>, Option<Wipi
     }
 }
 
-/// What the program learns from the velocities, with the noise that it estimates.
+/// The policy that the program learns from the velocities, with the noise that it estimates.
 fn ours(name: &str, rows: &Rows, states: &DMatrix<f64>, max_rows: usize) -> Map<String, Value> {
     let learner = FitOptions { max_rows, ..FitOptions::default() }.gaussian_processes();
     let fit = learner.fit(rows, &mut ChaCha8Rng::seed_from_u64(1)).expect("enough movements");
@@ -98,7 +99,7 @@ fn ours(name: &str, rows: &Rows, states: &DMatrix<f64>, max_rows: usize) -> Map<
     [(name.to_owned(), list(&actions)), (format!("{name}_facts"), facts)].into_iter().collect()
 }
 
-/// Position, orientation and both of the tool, as the program tries them with `--robot`.
+/// Position, orientation, and both, of the tool, as in the program's `--robot`.
 fn task_spaces(arm: &Wiping, shown: &[Recording]) -> Vec<TaskSpace> {
     let mut workspace = Workspace::new();
     let states = shown.iter().flat_map(|recording| recording.truth.states.column_iter());
@@ -115,7 +116,7 @@ fn task_spaces(arm: &Wiping, shown: &[Recording]) -> Vec<TaskSpace> {
     vec![space(0, 3), space(3, 3), space(0, 6)]
 }
 
-/// What somebody who knows the arm can add to its recordings.
+/// Data that knowledge of the arm adds to its recordings.
 fn kinematics_of(arm: &Wiping, shown: &[Recording]) -> Map<String, Value> {
     let (mut jacobians, mut positions, mut axes) = (Vec::new(), Vec::new(), Vec::new());
     let mut workspace = Workspace::new();

@@ -1,7 +1,8 @@
-//! Draws curves on logarithmic axes, as `benches/peers/growth.py` has measured them.
+//! Draws curves on logarithmic axes from the measurements of `benches/peers/growth.py`.
 //!
-//! usage: growth_picture POINTS.json PICTURE.svg, with POINTS.json the rows of panels: `[[{"title", "x_label", "y_label", "x": [from, to], "y": [from, to],
-//! "curves": [{"role", "name", "points": [[x, y], …]}], "notes": [{"at": [x, y], "text"}]}]]`. Ranges begin at powers of ten.
+//! usage: growth_picture POINTS.json PICTURE.svg, with POINTS.json the rows of panels: `[[{"title", "x_label", "y_label", "x": [from, to],
+//! "y": [from, to], "curves": [{"role", "name", "points": [[x, y], …]}], "notes": [{"at": [x, y], "text"}]}]]`. Ranges begin at powers of
+//! ten.
 
 use std::error::Error;
 use std::fs;
@@ -25,7 +26,7 @@ struct Drawn {
 #[serde(deny_unknown_fields)]
 struct Line {
     role: Role,
-    /// At its right end; may be empty.
+    /// Label at its right end; may be empty.
     name: String,
     points: Vec<(f64, f64)>,
 }

@@ -1,7 +1,7 @@
-//! Writes noisy movements, and the policy behind them, for `benches/peers/growth.py`.
+//! Writes noisy movements, and the true policy, for `benches/peers/growth.py`.
 //!
-//! usage: noisy_file MOVEMENTS SAMPLES RECORDING.csv TRUTH.csv: movements of so many samples among wells in the plane, with 5 % noise on velocities
-//! (`episode,t,x1,x2,v1,v2`), and 500 states with the policy there (`x1,x2,u1,u2`).
+//! usage: noisy_file MOVEMENTS SAMPLES RECORDING.csv TRUTH.csv: writes MOVEMENTS movements of SAMPLES samples among wells in the plane,
+//! with 5 % noise on velocities (`episode,t,x1,x2,v1,v2`), and 500 states with the policy there (`x1,x2,u1,u2`).
 
 use std::fs::File;
 use std::io::{self, BufWriter, Write as _};

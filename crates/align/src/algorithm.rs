@@ -10,17 +10,17 @@ use crate::search::{NearestSamples, SampleTree, SearchSpace, check_span};
 use crate::sparse::{self, SharedSamples};
 use crate::{AlignError, Aligned, AlignmentObjective, Bandwidth, Integration, Warning};
 
-/// So many trajectories and more are aligned without the matrix H, if they have few neighbours.
+/// From this number of trajectories on, they are aligned without the matrix H if they have few neighbours.
 const MANY: usize = 256;
 /// A sample is near few trajectories if they are less than this share of all.
 const FEW: f64 = 0.1;
-/// So many leaves of the tree of samples show how many trajectories are near a sample.
+/// Number of leaves of the tree of samples used to estimate how many trajectories are near a sample.
 const PROBED: usize = 64;
 
-/// Whether so many trajectories, so many of which are near a sample, are aligned without H.
+/// Whether this number of trajectories, with this number of them near a sample, is aligned without H.
 type Choice<'a> = &'a (dyn Fn(usize, f64) -> bool + Sync);
 
-/// What steps 3 to 5 find.
+/// Results of steps 3 to 5.
 struct Levels {
     sigma_squared: f64,
     objective: Option<AlignmentObjective>,
@@ -28,7 +28,7 @@ struct Levels {
     offsets: DVector<f64>,
 }
 
-/// Algorithm 1 of the paper, up to the regression: brings the potentials along single trajectories to one level.
+/// Algorithm 1 of the paper up to the regression: shifts the potentials along single trajectories to a common level.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct PolicyAlign {
@@ -36,13 +36,13 @@ pub struct PolicyAlign {
     pub integration: Integration,
     /// The bandwidth of the responsibilities.
     pub bandwidth: Bandwidth,
-    /// Groups of trajectories are split if an eigenvalue of H, beside the one of the constant vector, is below
-    /// this; in units of H, which grows with the number of samples. Positive; 1e-8 by default.
+    /// Groups of trajectories are split if an eigenvalue of H, other than that of the constant vector, is below this threshold. In units of
+    /// H, which grows with the number of samples. Positive; 1e-8 by default.
     pub eigenvalue_threshold: f64,
-    /// Responsibilities below this share of the largest at a sample are dropped; in [0, 1), 1e-20 by default, at which
-    /// offsets keep 14 digits.
+    /// Responsibilities below this share of the largest at a sample are dropped; in [0, 1), 1e-20 by default, with which offsets keep 14
+    /// digits.
     pub responsibility_floor: f64,
-    /// Bytes of memory that the alignment may take; 8 GiB by default. A larger alignment is refused before the search.
+    /// Maximum memory of the alignment in bytes; 8 GiB by default. A larger alignment is refused before the search.
     pub memory_limit: u64,
 }
 
@@ -59,23 +59,23 @@ impl Default for PolicyAlign {
 }
 
 impl PolicyAlign {
-    /// Aligns the local potentials of all trajectories, and leaves out those whose level the data do not determine.
+    /// Aligns the local potentials of all trajectories, and discards those whose level the data do not determine.
     ///
-    /// Time and memory grow with the number of pairs of samples within the bandwidth's search radius: with K
-    /// trajectories of N samples, up to 28 bytes for each of K²N, and K³ operations on H. From 256 trajectories on with
-    /// few neighbours, H is not formed: M samples then take O(M log M), and some 36 bytes each beside the states. Coordinates are compared as they are: unwrap continuous
-    /// angles beforehand.
+    /// Time and memory grow with the number of pairs of samples within the bandwidth's search radius: with K trajectories of N samples, up
+    /// to 28 bytes for each of K²N, and K³ operations on H. From 256 trajectories with few neighbours on, H is not formed: M samples then
+    /// take O(M log M) time, and some 36 bytes each in addition to the states. Coordinates are compared without wrapping, so unwrap
+    /// continuous angles beforehand.
     ///
     /// # Errors
-    /// [`AlignError`] for parameters out of range, missing velocities, an undefined bandwidth, overflow, underflow or
-    /// too many samples for the memory.
+    /// [`AlignError`] for parameters out of range, missing velocities, an undefined bandwidth, overflow, underflow or too many samples for
+    /// the memory.
     pub fn align(&self, demonstrations: &Demonstrations) -> Result<Aligned, AlignError> {
         self.align_with(&|count, neighbours| count >= MANY && neighbours <= FEW * count as f64, demonstrations)
     }
 
-    /// The same; `sparse` decides by the number of trajectories, and of those near a sample, whether H is not formed.
+    /// As [`align`](Self::align); `sparse` decides, from the number of trajectories and of those near a sample, whether to avoid H.
     fn align_with(&self, sparse: Choice<'_>, demonstrations: &Demonstrations) -> Result<Aligned, AlignError> {
-        // One visit to the thread pool for all steps.
+        // Enters the thread pool once for all steps.
         rayon::scope(|_| {
             self.check()?;
             let potentials = self.integration.potentials(demonstrations)?;
@@ -115,7 +115,7 @@ impl PolicyAlign {
         Ok(Levels { sigma_squared, objective: Some(objective), partition, offsets })
     }
 
-    /// The same without H, whose entries are as many as the pairs of trajectories that meet.
+    /// The same without H, which has as many entries as there are pairs of trajectories that meet.
     fn level_sparse(
         &self,
         tree: SampleTree,
@@ -130,7 +130,7 @@ impl PolicyAlign {
         Ok(Levels { sigma_squared, objective: None, partition, offsets })
     }
 
-    /// The bandwidth, if trajectories are many and each sample is near few of them.
+    /// The bandwidth, if there are many trajectories and each sample is near few of them.
     fn few_neighbours(
         &self,
         sparse: Choice<'_>,
@@ -162,7 +162,7 @@ impl PolicyAlign {
     fn search(&self, space: &SearchSpace) -> Result<(f64, NearestSamples), AlignError> {
         let squared_radius = |sigma_squared| squared_radius(sigma_squared, self.responsibility_floor);
         if self.bandwidth == Bandwidth::Wide {
-            // Nearly everything will be within the search radius, and shows all distances between trajectories.
+            // Nearly everything is within the search radius, which then gives all distances between trajectories.
             let nearest = space.nearest(f64::INFINITY, self.memory_limit)?;
             let sigma_squared = self.bandwidth.sigma_squared(&nearest.distances())?;
             return Ok((sigma_squared, nearest.within(squared_radius(sigma_squared))));

@@ -12,14 +12,14 @@ pub struct Aligned {
     pub(crate) sigma_squared: f64,
     pub(crate) objective: Option<AlignmentObjective>,
     pub(crate) partition: Partition,
-    /// All of `partition` but the first group, ascending.
+    /// All of `partition` except the first group, ascending.
     pub(crate) discarded: Vec<usize>,
     pub(crate) offsets: DVector<f64>,
     pub(crate) warnings: Vec<Warning>,
 }
 
 impl Aligned {
-    /// The trajectories that take part, ascending: the largest group whose offsets the data determine.
+    /// The aligned trajectories, ascending: the largest group whose offsets the data determine.
     pub fn kept(&self) -> &[usize] {
         &self.partition.groups[0]
     }
@@ -29,13 +29,15 @@ impl Aligned {
         &self.discarded
     }
 
-    /// All groups, each ascending: the largest (kept) first, equally large ones by lowest trajectory.
+    /// All groups, each ascending: the largest (kept) first, then by size; groups of equal size are ordered by their
+    /// lowest trajectory.
     pub fn groups(&self) -> &[Vec<usize>] {
         &self.partition.groups
     }
 
-    /// How the groups came about, step by step: first all trajectories come apart, then parts of theirs, a group always
-    /// before its parts. Parts that no later split takes further are the [`Aligned::groups`]; none if all hold together.
+    /// The history of the groups, step by step: first the split of all trajectories, then those of its parts; a group
+    /// always comes before its parts. Parts that are not split further are the [`Aligned::groups`]. Empty if there was
+    /// no split.
     pub fn splits(&self) -> &[Split] {
         &self.partition.splits
     }
@@ -45,7 +47,7 @@ impl Aligned {
         &self.offsets
     }
 
-    /// The offset of one trajectory; none if it was discarded.
+    /// The offset of one trajectory; `None` if it was discarded.
     pub fn offset(&self, trajectory: usize) -> Option<f64> {
         self.kept().binary_search(&trajectory).ok().map(|at| self.offsets[at])
     }
@@ -55,8 +57,8 @@ impl Aligned {
         self.sigma_squared
     }
 
-    /// The second smallest eigenvalue of H among the kept trajectories: how firmly their weakest part is
-    /// connected. None if a single trajectory was kept.
+    /// The second smallest eigenvalue of H among the kept trajectories, which measures how strongly their weakest part
+    /// is connected. `None` if a single trajectory was kept.
     pub fn lambda_2(&self) -> Option<f64> {
         self.partition.lambda_2
     }
@@ -66,8 +68,8 @@ impl Aligned {
         &self.warnings
     }
 
-    /// The objective of all trajectories, kept and discarded; none if H was not formed, because trajectories are many
-    /// and each meets few others.
+    /// The objective of all trajectories, kept and discarded; `None` if H was not formed, because there are many
+    /// trajectories and each meets few others.
     pub fn objective(&self) -> Option<&AlignmentObjective> {
         self.objective.as_ref()
     }
@@ -77,7 +79,7 @@ impl Aligned {
         &self.demonstrations
     }
 
-    /// The local potential of every trajectory, without its offset.
+    /// The local potential of each trajectory, without its offset.
     pub fn local_potentials(&self) -> impl ExactSizeIterator<Item = LocalPotential<'_>> {
         let trajectories = self.demonstrations.trajectories().iter();
         trajectories.zip(&self.potentials).map(|(trajectory, values)| LocalPotential::new(trajectory, values))
@@ -85,22 +87,22 @@ impl Aligned {
 
     /// Responsibility of each local model for a state: q(x) (12), (K).
     ///
-    /// Trajectories that are equally near have equal shares. To a state so far that its squared distances overflow, all
-    /// whose distances do are equally near. A state with a NaN has NaN shares.
+    /// Trajectories at equal distances have equal shares. If squared distances to a state overflow, the trajectories for
+    /// which they do count as equally near. A state with a NaN has NaN shares.
     ///
     /// # Panics
-    /// If the state has another dimension than the trajectories.
+    /// If the dimension of the state differs from that of the trajectories.
     pub fn responsibilities(&self, state: DVectorView<'_, f64>) -> DVector<f64> {
         let distances: Vec<f64> = self.local_potentials().map(|local| local.nearest(state).1).collect();
         let nearest = distances.iter().copied().fold(f64::INFINITY, f64::min);
-        // The nearest of all may be at infinity, and its excess NaN.
+        // If the nearest distance is infinite, the excess would be NaN.
         let excess = |distance: f64| if distance == nearest { 0.0 } else { distance - nearest };
         let weight = |distance| (-0.5 * (excess(distance) / self.sigma_squared)).exp();
         let weights = DVector::from_iterator(distances.len(), distances.into_iter().map(weight));
         &weights / weights.sum()
     }
 
-    /// State and levelled potential of one sample of a kept trajectory.
+    /// State and aligned potential of one sample of a kept trajectory.
     pub(crate) fn sample(&self, index: SampleIndex) -> (DVectorView<'_, f64>, f64) {
         let offset = self.offset(index.trajectory).expect("samples are of kept trajectories");
         let state = self.demonstrations.trajectories()[index.trajectory].state(index.sample);

@@ -4,19 +4,19 @@ use serde::{Deserialize, Serialize};
 use crate::AlignError;
 use crate::search::{SampleTree, SearchSpace};
 
-/// The rule for the bandwidth σ² in (11), from the squared distances
-/// d_kj = min over samples ‖x_kn − x_jm‖² of trajectories (18).
+/// The rule for the bandwidth σ² in (11), from the squared distances d_kj = min over samples ‖x_kn − x_jm‖² of
+/// trajectories (18).
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[non_exhaustive]
 pub enum Bandwidth {
     /// σ² = median_k min_{j≠k} d_kj (19), (20): the usual distance to the nearest other trajectory.
     #[default]
     Narrow,
-    /// The geometric mean of the two others, σ² = √(σ²_nar σ²_wid) (22).
+    /// The geometric mean of the other two, σ² = √(σ²_nar σ²_wid) (22).
     Medium,
     /// σ² = median_{j≠k} d_jk (21): the usual distance between two trajectories.
     Wide,
-    /// This σ², in units of the state squared.
+    /// A given σ², in units of the state squared.
     Fixed(f64),
 }
 
@@ -37,7 +37,7 @@ impl Bandwidth {
         if sigma_squared > 0.0 {
             return Ok(sigma_squared);
         }
-        // As if those that touch had not met: what the rule makes of the others.
+        // Applies the rule to the other pairs, as if those that touch did not meet.
         let apart = distances.map(|distance| if distance > 0.0 { distance } else { f64::INFINITY });
         let usable = Some(self.rule(&apart)).filter(|usable| usable.is_finite());
         Err(AlignError::ZeroBandwidth { pairs: touching(distances), usable })
@@ -52,7 +52,7 @@ impl Bandwidth {
         }
     }
 
-    /// σ² among trajectories. Narrow bandwidths take nothing but the distance of each trajectory to its nearest.
+    /// σ² among trajectories. Narrow bandwidths only need the distance of each trajectory to its nearest.
     pub(crate) fn among(self, space: &SearchSpace) -> Result<f64, AlignError> {
         self.check()?;
         match self {
@@ -68,12 +68,12 @@ impl Bandwidth {
         self.sigma_squared(&space.distances())
     }
 
-    /// Whether σ² takes the distances of all pairs of trajectories.
+    /// Whether σ² depends on the distances of all pairs of trajectories.
     pub(crate) fn needs_all_pairs(self) -> bool {
         !matches!(self, Bandwidth::Narrow | Bandwidth::Fixed(_))
     }
 
-    /// σ² among many trajectories, for rules that do not take the distances of all pairs.
+    /// σ² among many trajectories, for rules that do not need the distances of all pairs.
     pub(crate) fn among_many(self, n_trajectories: usize, tree: &SampleTree) -> Result<f64, AlignError> {
         if let Bandwidth::Fixed(sigma_squared) = self {
             return Ok(sigma_squared);
@@ -85,7 +85,7 @@ impl Bandwidth {
         if sigma_squared > 0.0 {
             return Ok(sigma_squared);
         }
-        // As if those that touch had not met.
+        // As if those that touch did not meet.
         let pairs = tree.touching();
         let usable = Some(median(tree.distances_to_nearest(n_trajectories, &pairs)));
         Err(AlignError::ZeroBandwidth { pairs, usable: usable.filter(|usable| usable.is_finite()) })
@@ -111,7 +111,7 @@ fn narrow(distances: &DMatrix<f64>) -> f64 {
     median(nearest)
 }
 
-/// Each pair counts once: d is symmetric, and the median of a list and of its doubled self are the same.
+/// Each pair is used once: d is symmetric, and a list and its duplicate have the same median.
 fn wide(distances: &DMatrix<f64>) -> f64 {
     median(pairs(distances).map(|(_, _, distance)| distance))
 }

@@ -1,11 +1,11 @@
-//! Checks of the demonstrations for faults that no alignment mends.
+//! Checks the demonstrations for faults that alignment cannot repair.
 
 use motion::anomalies::{duplicates, long_steps, mirror_images, stands_still};
 use motion::{Demonstrations, Trajectory};
 
 use crate::{AlignError, Warning};
 
-/// Refuses movements of different contexts.
+/// Refuses movements with different contexts.
 pub(crate) fn one_context(demonstrations: &Demonstrations) -> Result<(), AlignError> {
     let trajectories = demonstrations.trajectories();
     let other = trajectories.iter().position(|movement| movement.context() != trajectories[0].context());
@@ -27,7 +27,8 @@ pub(crate) fn check(demonstrations: &Demonstrations) -> Vec<Warning> {
     transposed.into_iter().chain(single).chain(alike(trajectories)).collect()
 }
 
-/// Pairs that share all states, forwards or backwards; of several alike, each with the first.
+/// Pairs that share all states, forwards or backwards; if several are alike, each is paired with
+/// the first.
 fn alike(trajectories: &[Trajectory]) -> Vec<Warning> {
     let moving = |k: &usize| !stands_still(trajectories[*k].states());
     let duplicates = duplicates(trajectories.iter().map(Trajectory::states));

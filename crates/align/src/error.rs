@@ -1,17 +1,17 @@
 use thiserror::Error;
 
-/// Why nothing could be learnt. All numbers count from 0.
+/// Reasons why nothing could be learnt. All numbers count from 0.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum AlignError {
-    /// A parameter lies outside its range.
+    /// A parameter is outside its range.
     #[error("{name} is {value}: it must {requirement}")]
     Parameter {
         /// Name of the field.
         name: &'static str,
-        /// The value given.
+        /// The given value.
         value: f64,
-        /// What the value must satisfy.
+        /// The condition on the value.
         requirement: &'static str,
     },
     /// The integration rule needs velocities that were not recorded.
@@ -22,7 +22,7 @@ pub enum AlignError {
         /// The first trajectory without velocities.
         trajectory: usize,
     },
-    /// The potential along a trajectory leaves the range of f64.
+    /// The potential along a trajectory exceeds the range of f64.
     #[error(
         "trajectory {trajectory}: the potential overflows at sample {sample}; use larger units of length or smaller ones of time"
     )]
@@ -32,7 +32,7 @@ pub enum AlignError {
         /// The first sample whose potential is not finite.
         sample: usize,
     },
-    /// The potential along a trajectory is too small for f64, although it moves.
+    /// The potential along a trajectory is too small for f64, although the trajectory moves.
     #[error(
         "trajectory {trajectory}: it moves, but its potential underflows to {lowest:e}; use smaller units of length or larger ones of time"
     )]
@@ -42,7 +42,7 @@ pub enum AlignError {
         /// The largest magnitude of its potential.
         lowest: f64,
     },
-    /// Squared distances between samples leave the range of f64.
+    /// Squared distances between samples exceed the range of f64.
     #[error(
         "the samples span {span:e} in dimension {dimension}, so squared distances overflow; use larger units of length"
     )]
@@ -52,7 +52,7 @@ pub enum AlignError {
         /// Largest minus smallest coordinate there.
         span: f64,
     },
-    /// The bandwidth rule compares trajectories, and there is one only.
+    /// The bandwidth rule compares trajectories, but there is only one.
     #[error(
         "a single trajectory has no distance to others, so its bandwidth is undefined; give more or use Bandwidth::Fixed"
     )]
@@ -65,8 +65,8 @@ pub enum AlignError {
     ZeroBandwidth {
         /// All pairs of trajectories at squared distance zero, lower index first.
         pairs: Vec<(usize, usize)>,
-        /// The rule's σ² from the distances of all other pairs, in units of the state squared: to use with
-        /// `Bandwidth::Fixed`. None if there are too few.
+        /// The rule's σ² from the distances of all other pairs, in units of the state squared, for use with
+        /// `Bandwidth::Fixed`. `None` if there are too few.
         usable: Option<f64>,
     },
     /// The alignment would take too much memory.
@@ -75,34 +75,34 @@ pub enum AlignError {
         *needed as f64 * 1e-9, *limit as f64 * 1e-9
     )]
     Memory {
-        /// Bytes that it could take.
+        /// Bytes that it could need.
         needed: u64,
-        /// Bytes that it may take.
+        /// Bytes that it may use.
         limit: u64,
     },
-    /// The eigenvalues of the alignment graph were not found.
+    /// The eigenvalues of the alignment graph could not be computed.
     #[error("the eigenvalues of H did not converge; try another bandwidth")]
     NoConvergence,
-    /// The offsets leave the range of f64.
+    /// The offsets exceed the range of f64.
     #[error(
         "the offset of trajectory {trajectory} is not finite: potentials differ by too much; use larger units of length"
     )]
     OffsetOverflow {
-        /// The first such trajectory.
+        /// The first trajectory with such an offset.
         trajectory: usize,
     },
-    /// No sample is left to learn from.
+    /// No sample remains to learn from.
     #[error("no sample is left to learn from; hold out fewer or give more trajectories")]
     NoSamples,
-    /// There is not one channel for each dimension.
+    /// The number of channels differs from the dimension.
     #[error("{found} channels for a state of {expected} dimensions; give one for each, or none")]
     Channels {
-        /// How many were given.
+        /// Number of given channels.
         found: usize,
-        /// How many dimensions there are.
+        /// Number of dimensions.
         expected: usize,
     },
-    /// Movements depended on something besides the state, which no potential of the state tells apart.
+    /// Movements depended on something besides the state, which a potential of the state cannot represent.
     #[error(
         "trajectory {trajectory} has another context (goal, object) than the first; align movements of one context each, or fit \
          the slope GP, which learns policies of a context"
@@ -116,18 +116,18 @@ pub enum AlignError {
         "the stored policy has version {found}, this program reads 1 to {known}; use the program that stored it, or a newer one"
     )]
     PolicyVersion {
-        /// Its version.
+        /// The version found.
         found: u32,
-        /// The newest that can be read.
+        /// The newest version that can be read.
         known: u32,
     },
     /// A stored policy is inconsistent.
     #[error("the stored policy is damaged: {reason}")]
     CorruptPolicy {
-        /// What is wrong with it.
+        /// Description of the fault.
         reason: &'static str,
     },
-    /// The regression refused its parameters or data.
+    /// The regression refused its parameters or its data.
     #[error("LWPR: {0}")]
     Lwpr(#[from] lwpr::LwprError),
 }

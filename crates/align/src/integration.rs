@@ -6,13 +6,13 @@ use crate::AlignError;
 
 /// The rule that integrates the potential along one trajectory (5)–(9).
 ///
-/// Under u = Nπ with N an orthogonal projection, dφ = ∇φᵀdx = −uᵀdx, so that the potential falls by the work of the
+/// If u = Nπ with an orthogonal projection N, then dφ = ∇φᵀdx = −uᵀdx: the potential decreases by the work of the
 /// policy along the path. Values start at φ̂₁ = 0 and have units of the state squared per second.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[non_exhaustive]
 pub enum Integration {
-    /// φ̂_{i+1} = φ̂_i − ‖x_{i+1} − x_i‖² / δt_i (9): positions alone. Noise of variance s² on the positions looks
-    /// like a steady descent of 2ns²/δt a step; with noisy states, record velocities.
+    /// φ̂_{i+1} = φ̂_i − ‖x_{i+1} − x_i‖² / δt_i (9): positions alone. Noise of variance s² on the positions has the
+    /// effect of a steady descent of 2ns²/δt per step; with noisy states, record velocities.
     #[default]
     Displacement,
     /// φ̂_{i+1} = φ̂_i − ‖u_i‖² δt_i: recorded velocities or commands alone.
@@ -22,7 +22,7 @@ pub enum Integration {
 }
 
 impl Integration {
-    /// The values φ̂_k of every trajectory at its own samples, N_k of them.
+    /// The values φ̂_k of each trajectory at its own samples, N_k of them.
     ///
     /// # Errors
     /// [`AlignError::NoVelocities`], [`AlignError::PotentialOverflow`] or [`AlignError::PotentialUnderflow`].
@@ -56,7 +56,7 @@ impl Integration {
         Ok(values)
     }
 
-    /// Whether anything but 0 is summed, if it were not for rounding.
+    /// Whether the sum contains anything but 0, apart from rounding.
     fn moves(self, trajectory: &Trajectory) -> bool {
         let x = trajectory.states();
         let mut steps = (0..x.ncols() - 1).flat_map(|i| (0..x.nrows()).map(move |c| (i, c)));
@@ -65,7 +65,7 @@ impl Integration {
         match self {
             Integration::Displacement => steps.any(|(i, c)| stepped(i, c)),
             Integration::Velocity => steps.any(|(i, c)| wanted(i, c)),
-            // What is orthogonal sums to 0 by itself.
+            // Orthogonal terms sum to 0.
             Integration::Work => {
                 let product = |i, c| trajectory.velocities().map_or(0.0, |u| u[(c, i)] * (x[(c, i + 1)] - x[(c, i)]));
                 steps.any(|(i, c)| stepped(i, c) && wanted(i, c) && product(i, c).abs() < f64::MIN_POSITIVE)
@@ -74,7 +74,7 @@ impl Integration {
     }
 }
 
-/// Values that start at 0 and fall by `descent(i)` between samples i and i + 1.
+/// Values that start at 0 and decrease by `descent(i)` between samples i and i + 1.
 fn descend(positions: &DMatrix<f64>, descent: impl Fn(usize) -> f64) -> Vec<f64> {
     let mut value = 0.0;
     let falls = (0..positions.ncols() - 1).map(|i| {

@@ -26,26 +26,26 @@
 //!
 //! # The problem
 //!
-//! A system follows a policy u = π(x) that descends a potential, π(x) = −∇φ(x) (1), (4). Constraints that are unknown
-//! and vary between movements let only the component N(x, t) π(x) through (3). Regression on the observed velocities
-//! averages over the constraints; this crate recovers π itself.
+//! A system follows a policy u = π(x) that descends a potential, π(x) = −∇φ(x) (1), (4). Unknown constraints, which
+//! vary between movements, only pass the component N(x, t) π(x) (3). Regression on the observed velocities averages
+//! over the constraints; this crate recovers π itself.
 //!
 //! # The algorithm
 //!
-//! 1. [`Integration`]: N projects orthogonally, so that dφ = −uᵀdx along every trajectory. This gives the potential
-//!    along it up to a constant (5)–(9).
+//! 1. [`Integration`]: N projects orthogonally, so dφ = −uᵀdx along every trajectory. This gives the potential along it
+//!    up to a constant (5)–(9).
 //! 2. [`LocalPotential`]: each trajectory predicts the potential of any state by that of its nearest sample (10).
 //! 3. [`Bandwidth`]: responsibilities weigh these predictions by distance (11), (12), with σ² from the distances
 //!    between trajectories (18)–(22).
 //! 4. [`AlignmentObjective`]: the offsets of all local potentials minimise their weighted disagreement (13)–(17), a
 //!    quadratic form whose matrix is the Laplacian of a graph of trajectories.
-//! 5. Where the graph falls apart, relative offsets are undetermined: the largest group is kept, the others are
-//!    discarded (Sec. 3.3, App. B).
+//! 5. If the graph has separate parts, their relative offsets are undetermined: the largest group is kept, the others
+//!    are discarded (Sec. 3.3, App. B).
 //! 6. A [`Regressor`], by default LWPR, learns the global potential from the aligned samples (23). Its negative
 //!    gradient is the policy.
 //!
-//! [`PolicyAlign::align`] does steps 1 to 5, and [`Aligned`] holds the result with its [`Warning`]s.
-//! [`DirectPolicyLearning`] is the naive regression to compare with.
+//! [`PolicyAlign::align`] performs steps 1 to 5, and [`Aligned`] holds the result with its [`Warning`]s.
+//! [`DirectPolicyLearning`] is the naive regression, for comparison.
 //!
 //! # When it fails
 //!
@@ -55,20 +55,20 @@
 //! - **Constraints that push** (A u = b, b ≠ 0), move or project obliquely: dφ = −uᵀdx does not hold.
 //! - **Noisy positions** bias the integrated potential. Record velocities, or smooth the positions first (crate
 //!   `smoothing`).
-//! - **Many groups**: [`Aligned::discarded`] is long; use a wider [`Bandwidth`] or record more.
-//! - **A context** (goal, object) that differs between movements: the slope GP learns policies of one.
+//! - **Many groups**: if [`Aligned::discarded`] is long, use a wider [`Bandwidth`] or record more.
+//! - **A context** (goal, object) that differs between movements: the slope GP learns policies with a context.
 //! - [`AlignError`]: parameters out of range, missing velocities, an undefined bandwidth, overflow, or too little
 //!   memory.
 //!
 //! # Conventions
 //!
-//! The learner sees only [`motion::Demonstrations`]: the crate depends on nothing that knows the constraints or the
-//! true policy. The caller passes the random generator; the same seed gives the same bits at any number of threads.
-//! `docs/notation.md` maps the symbols of the paper to names.
+//! The learner uses only [`motion::Demonstrations`]: the crate does not depend on any crate with access to the
+//! constraints or the true policy. The caller passes the random generator; the same seed gives the same bits at any
+//! number of threads. `docs/notation.md` maps the symbols of the paper to names.
 //!
-//! To read the source: `algorithm` has one line for each step; `integration`, `bandwidth`, and the folders `search`
-//! (nearest samples) and `offsets` (responsibilities, objective, groups, offsets) implement them; `learning` has the
-//! regression and the policies.
+//! Reading the source: `algorithm` has one line for each step; `integration`, `bandwidth`, and the folders `search`
+//! (nearest samples) and `offsets` (responsibilities, objective, groups, offsets) implement the steps; `learning`
+//! contains the regression and the policies.
 
 mod algorithm;
 mod aligned;

@@ -1,8 +1,8 @@
 use motion::Trajectory;
 use nalgebra::DVectorView;
 
-/// The potential of one trajectory, known up to a constant along its path, and elsewhere taken from its nearest
-/// sample (10).
+/// The potential of one trajectory, known up to a constant along its path; elsewhere it is that of the nearest sample
+/// (10).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LocalPotential<'a> {
     trajectory: &'a Trajectory,
@@ -27,15 +27,15 @@ impl<'a> LocalPotential<'a> {
     /// f(x) = φ̂ at the nearest sample (10), in units of the state squared per second.
     ///
     /// # Panics
-    /// If the state has another dimension than the trajectory.
+    /// If the dimension of the state differs from that of the trajectory.
     pub fn value(&self, state: DVectorView<'_, f64>) -> f64 {
         self.values[self.nearest(state).0]
     }
 
-    /// Index and squared distance of the nearest sample; the lowest index of equally near ones.
+    /// Index and squared distance of the nearest sample; the lowest index among equally near ones.
     ///
     /// # Panics
-    /// If the state has another dimension than the trajectory.
+    /// If the dimension of the state differs from that of the trajectory.
     pub fn nearest(&self, state: DVectorView<'_, f64>) -> (usize, f64) {
         assert_eq!(state.len(), self.trajectory.dim(), "a state has as many dimensions as the trajectory");
         let distance = |sample| {

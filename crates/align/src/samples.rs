@@ -22,39 +22,39 @@ impl<'a> Samples<'a> {
         Samples { aligned, indices }
     }
 
-    /// Where each sample is from.
+    /// Trajectory and sample number of each sample.
     pub fn indices(&self) -> &[SampleIndex] {
         &self.indices
     }
 
-    /// How many there are.
+    /// Number of samples.
     pub fn len(&self) -> usize {
         self.indices.len()
     }
 
-    /// Whether there are none.
+    /// Whether there are no samples.
     pub fn is_empty(&self) -> bool {
         self.indices.is_empty()
     }
 
-    /// States (n, M), one column a sample.
+    /// States (n, M), one column per sample.
     pub fn states(&self) -> DMatrix<f64> {
         let mut states = DMatrix::zeros(self.aligned.demonstrations().dim(), self.len());
         states.column_iter_mut().zip(self).for_each(|(mut column, (state, _))| column.copy_from(&state));
         states
     }
 
-    /// Levelled potentials φ̂_kn + b_k, (M), in units of the state squared per second.
+    /// Aligned potentials φ̂_kn + b_k, (M), in units of the state squared per second.
     pub fn values(&self) -> DVector<f64> {
         DVector::from_iterator(self.len(), self.iter().map(|(_, value)| value))
     }
 
-    /// State x_kn, (n), and levelled potential φ̂_kn + b_k of each sample.
+    /// State x_kn, (n), and aligned potential φ̂_kn + b_k of each sample.
     pub fn iter(&self) -> SampleIter<'a, std::iter::Copied<std::slice::Iter<'_, SampleIndex>>> {
         SampleIter { aligned: self.aligned, indices: self.indices.iter().copied() }
     }
 
-    /// These samples alone; those that are not here are ignored.
+    /// The intersection with `wanted`; other samples are ignored.
     #[must_use]
     pub fn only(&self, wanted: &[SampleIndex]) -> Self {
         let wanted = SampleSet::of(wanted);
@@ -62,7 +62,7 @@ impl<'a> Samples<'a> {
         Samples::new(self.aligned, chosen.collect())
     }
 
-    /// All samples but these; those that are not here are ignored.
+    /// All samples except `held_out`; samples that are not contained are ignored.
     #[must_use]
     pub fn without(&self, held_out: &[SampleIndex]) -> Self {
         let held_out = SampleSet::of(held_out);
@@ -71,7 +71,7 @@ impl<'a> Samples<'a> {
     }
 }
 
-/// Walks through samples: the state x_kn, (n), and the levelled potential φ̂_kn + b_k of each.
+/// Iterator over samples: the state x_kn, (n), and the aligned potential φ̂_kn + b_k of each.
 #[derive(Debug, Clone)]
 pub struct SampleIter<'a, I> {
     aligned: &'a Aligned,

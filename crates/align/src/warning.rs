@@ -2,9 +2,9 @@ use std::fmt;
 
 use crate::offsets::bipartition::Partition;
 
-/// More than this share of trajectories discarded is worth a word.
+/// Share of discarded trajectories above which a warning is given.
 const MANY: f64 = 0.5;
-/// A λ₂ below so many thresholds is worth a word.
+/// A warning is given if λ₂ is below this number of thresholds.
 const NEAR: f64 = 10.0;
 
 /// Reasons to doubt the result of an alignment.
@@ -13,16 +13,16 @@ const NEAR: f64 = 10.0;
 pub enum Warning {
     /// More than half of the trajectories are connected too weakly to be aligned.
     ManyDiscarded {
-        /// How many were discarded.
+        /// Number of discarded trajectories.
         discarded: usize,
-        /// Of how many.
+        /// Number of all trajectories.
         of: usize,
     },
-    /// A part of the kept trajectories is barely connected to the rest: its level may be wrong.
+    /// A part of the kept trajectories is barely connected to the rest, so its level may be wrong.
     BarelyConnected {
         /// λ₂ of the kept trajectories.
         lambda_2: f64,
-        /// The threshold below which they would have been taken apart.
+        /// The threshold below which they would have been separated.
         threshold: f64,
     },
     /// Even the longest trajectory has less than half as many samples as dimensions.
@@ -32,13 +32,13 @@ pub enum Warning {
         /// Samples of the longest trajectory.
         n_samples: usize,
     },
-    /// One step is over ten times as long as those about it: an angle that was wrapped, samples that are missing.
+    /// One step is more than ten times as long as its neighbours, because of a wrapped angle or missing samples.
     LongStep {
         /// The trajectory.
         trajectory: usize,
         /// The sample before its longest such step.
         sample: usize,
-        /// How many times the usual step of the trajectory it is.
+        /// Its length, as a multiple of the trajectory's usual step.
         times: f64,
     },
     /// The trajectory never moves and carries no information about the policy.
@@ -51,7 +51,7 @@ pub enum Warning {
         /// Both, the lower first.
         trajectories: [usize; 2],
     },
-    /// One trajectory is another, run backwards: one of them climbs.
+    /// One trajectory is another one run backwards, so one of them ascends.
     Mirrored {
         /// Both, the lower first.
         trajectories: [usize; 2],
@@ -59,7 +59,7 @@ pub enum Warning {
 }
 
 impl Warning {
-    /// About how trajectories hang together.
+    /// Warnings about the connections between trajectories.
     pub(crate) fn about(partition: &Partition, threshold: f64) -> Vec<Self> {
         let of: usize = partition.groups.iter().map(Vec::len).sum();
         let discarded = of - partition.groups[0].len();

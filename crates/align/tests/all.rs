@@ -1,4 +1,4 @@
-//! All tests but those of the modules themselves, in one program: what they share is compiled once, and they run side by side.
+//! All integration tests in one program, so that shared code is compiled once and the tests run in parallel.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 

@@ -1,4 +1,4 @@
-//! What cannot be aligned is refused with an error that says where and why; what looks odd but can, gives finite numbers.
+//! Demonstrations that cannot be aligned give an error with place and reason; unusual but valid ones give finite numbers.
 
 use crate::literal::Literal;
 #[allow(dead_code, reason = "H is all that is compared")]
@@ -174,7 +174,7 @@ fn what_is_refused() {
     for (name, learner, demonstrations, expected) in cases {
         assert_eq!(learner.align(&demonstrations).unwrap_err(), expected, "{name}");
     }
-    // What is left has lost most of its digits.
+    // The remaining value has lost most of its digits.
     let slow = Demonstrations::from_states(sound(), 4e307).unwrap();
     let error = PolicyAlign::default().align(&slow).unwrap_err();
     assert!(matches!(error, AlignError::PotentialUnderflow { trajectory: 0, lowest } if lowest > 0.0), "{error}");
@@ -228,7 +228,7 @@ fn what_the_regression_refuses() {
     assert_eq!(policy.with_cutoff(2.0).unwrap_err(), cutoff(2.0));
 }
 
-/// Everything that a learner can be asked, and that none of it is NaN.
+/// Checks that no output of a learner is NaN.
 fn assert_finite(name: &str, aligned: &Aligned) {
     let size = aligned.samples().states().amax().max(f64::MIN_POSITIVE);
     let norm_in = Some(DVector::from_element(aligned.demonstrations().dim(), size));
@@ -361,7 +361,7 @@ fn an_action_of_another_dimension_is_a_bug() {
 
 #[test]
 fn what_overflows_among_the_discarded_does_no_harm() {
-    // Three that agree; far away two that meet, with potentials too different for f64.
+    // Three trajectories that agree; far away, two that meet, with potentials too different for f64.
     let still = |y| (line([0.0, y], [3.0, y], 4), DMatrix::from_element(2, 4, 0.1));
     let steep = |sign: f64| (line([100.0, 0.0], [103.0, 0.0], 4), DMatrix::from_element(2, 4, sign * 5e307));
     let movements = [still(0.0), still(1.0), still(2.0), steep(1.0), steep(-1.0)];

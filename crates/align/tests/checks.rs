@@ -1,4 +1,4 @@
-//! What looks wrong about the demonstrations themselves is said, with the trajectory, and what does not is not.
+//! Anomalies of the demonstrations are reported with the trajectory; normal demonstrations give no warnings.
 
 use align::{Bandwidth, PolicyAlign, Warning};
 use demo_gen::{Redraw, ThreeLinkArm, ToyPotential, ToySystem, demonstrations};
@@ -58,7 +58,7 @@ fn an_angle_that_was_wrapped_and_samples_that_are_missing() {
     }
     let Warning::LongStep { trajectory: 7, sample: 10, times } = warnings(jumping)[0] else { panic!("another") };
     assert!(times > 30.0);
-    // A single sample that is far off makes two long steps; the longer one is told.
+    // A single outlier makes two long steps; the longer one is reported.
     let mut off = movements(3);
     off[3][(0, 20)] += 5.0;
     assert!(matches!(warnings(off)[..], [Warning::LongStep { trajectory: 3, sample: 19 | 20, .. }]));

@@ -1,4 +1,4 @@
-//! Small alignments as another program found them; see `golden/README.md`.
+//! Small alignments computed by another program; see `golden/README.md`.
 
 use align::{Bandwidth, PolicyAlign};
 use motion::Demonstrations;
@@ -42,7 +42,7 @@ fn check(text: &str) {
     let lambda_2 = case["lambda_2"].as_f64().unwrap();
     assert!((aligned.lambda_2().unwrap() - lambda_2).abs() <= 1e-14 * laplacian.amax(), "{name}");
 
-    // The peer is good to about 1e-16 / λ₂; this crate keeps nearly all digits.
+    // The other program is accurate to about 1e-16 / λ₂; this crate keeps nearly all digits.
     let miss = |offsets: &str| (aligned.offsets() - DVector::from_vec(numbers(&case[offsets]))).amax();
     assert!(miss("offsets") <= 1e-14 + 1e-15 / lambda_2, "{name}: {:e}", miss("offsets"));
     assert!(miss("extended_offsets") <= 1e-13, "{name}: {:e}", miss("extended_offsets"));

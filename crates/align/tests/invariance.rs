@@ -1,4 +1,4 @@
-//! What must not matter to the alignment, and what must scale with the data.
+//! Invariances of the alignment, and quantities that scale with the data.
 
 use crate::drawn;
 use align::{AlignError, Aligned, Bandwidth, Integration, PolicyAlign};
@@ -15,7 +15,8 @@ fn align(
     PolicyAlign { integration, bandwidth, ..Default::default() }.align(demonstrations)
 }
 
-/// λ₂ far enough from the threshold that rounding cannot decide which trajectories are kept, and offsets are firm.
+/// Whether λ₂ is so far from the threshold that rounding cannot decide which trajectories are kept, and offsets are
+/// accurate.
 fn firm(aligned: &Aligned) -> bool {
     aligned.lambda_2().is_none_or(|lambda_2| lambda_2 > 1e-6) && aligned.groups().len() == 1
 }
@@ -74,7 +75,7 @@ proptest! {
         demonstrations in drawn::demonstrations(2), integration in drawn::integration(), bandwidth in drawn::bandwidth(),
         exponent in -40..40,
     ) {
-        // By a power of two, so that rounding is scaled too and every bit must agree.
+        // By a power of two, so that rounding scales too and every bit must agree.
         let c = 2.0_f64.powi(exponent);
         let scaled = drawn::mapped(&demonstrations, |x| x * c, |u| u * c);
         let scaled_bandwidth = match bandwidth {
@@ -95,8 +96,8 @@ proptest! {
         walks in vec((0i32..6, 0i32..6, vec((0usize..2, any::<bool>()), 3..25)), 2..10), slope in vec(-1.0..1.0, 2),
         curvature in 0.01..0.5,
     ) {
-        // Walks on the points of a grid, which agree exactly where they meet; the bandwidth is so small that nothing
-        // else counts. Velocities are such that uᵀdx is the exact fall of φ.
+        // Walks on the points of a grid, which coincide exactly where they meet; the bandwidth is so small that nothing
+        // else contributes. Velocities are such that uᵀdx is the exact decrease of φ.
         let phi = |x: &DVector<f64>| curvature * x.norm_squared() + slope[0] * x[0] + slope[1] * x[1];
         let trajectories = walks.iter().map(|(row, column, steps)| {
             let mut x = DVector::from_vec(vec![f64::from(*row), f64::from(*column)]);
@@ -120,7 +121,8 @@ proptest! {
     }
 }
 
-/// Seconds enter step by step: a movement of uneven stamps falls by the work of each step at its own speed.
+/// Time steps enter individually: with uneven stamps, the potential decreases by the work of each step at its own
+/// speed.
 #[test]
 fn uneven_stamps() {
     let states = DMatrix::from_row_slice(1, 4, &[0.0, 1.0, 3.0, 4.0]);

@@ -37,7 +37,7 @@ fn naive() -> DirectPolicyLearning {
     DirectPolicyLearning { regressor: regressor() }
 }
 
-/// (n, M) of a vector function at all true states.
+/// Values (n, M) of a vector function at all true states.
 fn everywhere(recordings: &[Recording], f: impl Fn(&DVector<f64>) -> DVector<f64>) -> DMatrix<f64> {
     let states = recordings.iter().flat_map(|r| r.truth.states.column_iter());
     DMatrix::from_columns(&states.map(|x| f(&x.into_owned())).collect::<Vec<_>>())
@@ -55,7 +55,7 @@ fn the_policy_is_recovered_where_the_naive_one_is_not() {
         let actions = everywhere(&recordings, |x| policy.action(x.as_view()));
         metrics::nupe(&truth, &actions).unwrap()
     };
-    // The paper has .024 ± .011 for this set-up, and the naive policy cannot know what it never saw.
+    // The paper has .024 ± .011 for this set-up; the naive policy cannot learn unobserved components.
     assert!(error(&learnt) < 0.1, "{}", error(&learnt));
     assert!(error(&naive) > 0.3, "{}", error(&naive));
 }
@@ -175,7 +175,7 @@ fn far_away_there_is_no_support() {
     assert_eq!(learnt.action(far.as_view()), DVector::zeros(2));
     assert_eq!(&naive.action(far.as_view()), naive.regression().mean());
 
-    // A smaller cutoff reaches farther, and changes little where there is data.
+    // A smaller cutoff reaches farther, and changes little near the data.
     let edge = DVector::from_vec(vec![3.5, 3.5]);
     let wider = learnt.with_cutoff(1e-200).unwrap();
     assert!(learnt.support(edge.as_view()) == 0.0 && wider.support(edge.as_view()) > 0.0);
@@ -183,7 +183,7 @@ fn far_away_there_is_no_support() {
     assert!(naive.support(edge.as_view()) == 0.0 && wider.support(edge.as_view()) > 0.0);
 }
 
-/// Least squares of c + w‖x‖²: a regressor of somebody's own.
+/// Least squares of c + w‖x‖²: an example of a user's own regressor.
 struct ParabolaFit;
 
 impl Regressor for ParabolaFit {
@@ -203,14 +203,14 @@ fn another_regressor_fits_in() {
     let aligned = align_toy(Bandwidth::Narrow, 11);
     let regressor: &dyn Regressor<Fitted = Parabola, Error = std::convert::Infallible> = &ParabolaFit;
     let learnt = aligned.regress(regressor, &aligned.samples(), &mut rng(12)).unwrap();
-    // Squared displacements over-estimate φ = 0.05‖x‖² by 1/(1 − 0.05·1); nearest samples add a little.
+    // Squared displacements overestimate φ = 0.05‖x‖² by 1/(1 − 0.05·1); nearest samples add a little.
     let expected = 0.05 / 0.95;
     assert!((learnt.weight / expected - 1.0).abs() < 0.03, "{}", learnt.weight);
 }
 
 #[test]
 fn held_out_samples_are_not_learnt() {
-    // Two samples are so far off that learning them would show.
+    // Two samples are such outliers that learning from them would be visible.
     let mut x = DMatrix::from_fn(1, 20, |_, i| i as f64 * 0.1);
     let mut u = DMatrix::from_element(1, 20, 1.0);
     (u[3], u[15]) = (1e6, -1e7);
@@ -246,7 +246,7 @@ fn every_pass_learns_every_sample_of_outputs_divided_by_their_spread() {
     assert_eq!(model.n_data(), 3 * values.len());
     let spread = values.variance().sqrt();
     let found = model.params().norm_out.as_ref().unwrap()[0];
-    // A variance by n − 1 would be off by 4e-4.
+    // A variance with n − 1 would differ by 4e-4.
     assert!((found / spread - 1.0).abs() < 1e-12, "{found} {spread}");
 }
 
@@ -280,7 +280,7 @@ fn all_ways_to_learn_give_the_same_policy() {
         let states = (0..50).map(|i| DVector::from_vec(vec![0.04 * f64::from(i) - 1.0, 0.3]));
         states.flat_map(|x| policy.action(x.as_view()).map(f64::to_bits).data.as_vec().clone()).collect()
     };
-    // The generator goes on from the same place, too.
+    // The generator also continues from the same state.
     let next = |learn: &dyn Fn(&mut ChaCha8Rng) -> Vec<u64>| {
         let mut rng = rng(17);
         (learn(&mut rng), rng.next_u64())
@@ -345,7 +345,7 @@ proptest! {
         together.sort_unstable();
         prop_assert_eq!(&together, samples.indices());
 
-        // Every sample is what its index says.
+        // Every sample matches its index.
         for (index, (x, value)) in held_out.indices().iter().zip(&held_out) {
             let trajectory = &aligned.demonstrations().trajectories()[index.trajectory];
             prop_assert_eq!(x, trajectory.state(index.sample));

@@ -1,4 +1,4 @@
-//! The alignment, stage by stage, beside the paper's formulas.
+//! The alignment, stage by stage, compared with the paper's formulas.
 
 use crate::drawn;
 use crate::literal::Literal;
@@ -36,7 +36,7 @@ proptest! {
         prop_assert!((&aligned.objective().unwrap().laplacian - laplacian).amax() <= 1e-12 * samples);
         prop_assert!((&aligned.objective().unwrap().linear - linear).amax() <= 1e-12 * samples * size);
 
-        // The offsets are where the gradient of the kept trajectories' own objective vanishes, and sum to 0.
+        // At the offsets, the gradient of the kept trajectories' own objective vanishes; the offsets sum to 0.
         let offsets = aligned.offsets().as_slice();
         let slope = literal.slope(aligned.kept(), offsets);
         prop_assert!(slope.iter().all(|slope| slope.abs() <= 1e-11 * samples * size), "{slope:?}");
@@ -58,13 +58,13 @@ proptest! {
         let scale = 1.0 + objective.constant + expected + objective.linear.amax() + objective.laplacian.amax();
         prop_assert!(close(objective.value(&b), expected, 100.0 * scale), "{} {expected}", objective.value(&b));
 
-        // The gradient is the slope of the objective: central differences are exact for a quadratic.
+        // The gradient is the slope of the objective; central differences are exact for a quadratic.
         let h = 0.5;
         let at = |t: f64| literal.objective(&all, (&b + &step * t).as_slice());
         let difference = at(h) - at(-h);
         prop_assert!(close(objective.gradient(&b).dot(&step), difference / (2.0 * h), 100.0 * scale));
 
-        // The minimiser (17) minimises.
+        // The minimiser (17) is a minimum.
         let least = objective.value(&objective.minimiser());
         prop_assert!(least <= objective.value(&b) + 1e-9 * scale);
         prop_assert!(objective.minimiser().sum().abs() <= 1e-9 * (1.0 + objective.minimiser().amax()));
@@ -111,7 +111,7 @@ proptest! {
         prop_assert!(shares.iter().all(|share| (0.0..=1.0).contains(share)));
         prop_assert!((shares.sum() - 1.0).abs() < 1e-12);
 
-        // Where squared distances overflow, all are equally far.
+        // If squared distances overflow, all trajectories count as equally far.
         let beyond = DVector::from_element(demonstrations.dim(), 1e200_f64.copysign(far));
         let equal = 1.0 / demonstrations.n_trajectories() as f64;
         let shares = aligned.responsibilities(beyond.as_view());
@@ -120,7 +120,7 @@ proptest! {
         unknown[0] = f64::NAN;
         prop_assert!(aligned.responsibilities(unknown.as_view()).iter().all(|share| share.is_nan()));
 
-        // At the samples they are those of the literal formula.
+        // At the samples they equal those of the literal formula.
         let literal = Literal::new(&demonstrations, Integration::Displacement, bandwidth, 0.0);
         let states = demonstrations.trajectories().iter().flat_map(|t| t.states().column_iter());
         for (state, expected) in states.zip(&literal.shares) {
@@ -134,7 +134,7 @@ proptest! {
         start in vec(-2.0..2.0, 1..5), weight in 0.001..0.3, time_step in 0.1..1.5, n_samples in 2usize..30,
         rail in vec(0.1..1.0, 5), constrained in any::<bool>(),
     ) {
-        // x_{i+1} = x_i + δt N π(x_i), φ = w‖x‖²: each fall is 1/(1 − wδt) times the true one, for any projector N.
+        // x_{i+1} = x_i + δt N π(x_i), φ = w‖x‖²: each decrease is 1/(1 − wδt) times the true one, for any projector N.
         let rail = DVector::from_column_slice(&rail[..start.len()]).normalize();
         let mut x = DVector::from_vec(start);
         let mut states = vec![];

@@ -1,4 +1,4 @@
-//! What was learnt is stored and read back: the same bits, for ever, and nothing that is damaged.
+//! Stored policies: after reading they have the same bits, old files remain readable, and damaged ones are refused.
 
 use align::{
     AlignError, Bandwidth, DirectPolicy, DirectPolicyLearning, Integration, LwprRegressor, PolicyAlign,
@@ -18,7 +18,7 @@ fn observed() -> Demonstrations {
     demonstrations(&system.record(&mut ChaCha8Rng::seed_from_u64(1)).unwrap()).unwrap()
 }
 
-/// Few fields, so that the golden files stay small.
+/// A regressor with few fields, so that the golden files stay small.
 fn regressor() -> LwprRegressor {
     let params = LwprParams { init_d: 2.0, w_gen: 0.1, ..LwprRegressor::default().params };
     LwprRegressor { params, passes: 2, ..LwprRegressor::default() }
@@ -42,13 +42,13 @@ fn direct_policy() -> DirectPolicy {
     learner.learn_policy(&observed(), &[], &mut ChaCha8Rng::seed_from_u64(3)).unwrap()
 }
 
-/// States in and about the data.
+/// States within and around the data.
 fn states(count: usize) -> impl Iterator<Item = DVector<f64>> {
     let at = |i: usize, turn: f64| 3.0 * (turn * i as f64).sin();
     (0..count).map(move |i| DVector::from_vec(vec![at(i, 0.7), at(i, 1.3)]))
 }
 
-/// Action and support.
+/// Action and support at each state.
 fn answers(policy: &dyn LearntPolicy, count: usize) -> Vec<[f64; 3]> {
     let answer = |x: DVector<f64>| {
         let action = policy.action(x.as_view());
@@ -85,7 +85,7 @@ fn golden(name: &str) -> Value {
     serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap()
 }
 
-/// Later programs may calculate in another order, but must mean the same.
+/// Later programs may compute in another order, but must agree up to rounding.
 fn assert_golden(policy: &dyn LearntPolicy, golden: &Value) {
     let expected: Vec<[f64; 3]> = serde_json::from_value(golden["answers"].clone()).unwrap();
     for (found, expected) in answers(policy, expected.len()).into_iter().zip(expected) {

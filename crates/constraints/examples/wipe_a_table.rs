@@ -13,7 +13,7 @@ fn tip(q: DVectorView<'_, f64>) -> [f64; 2] {
     [a.cos() + b.cos() + 0.5 * c.cos(), a.sin() + b.sin() + 0.5 * c.sin()]
 }
 
-/// Its Jacobian, (2, 3): each joint turns the tip about itself.
+/// Its Jacobian, (2, 3): each joint rotates the tip about itself.
 fn jacobian(q: DVectorView<'_, f64>, mut jacobian: DMatrixViewMut<'_, f64>) {
     let ([x, y], (a, b)) = (tip(q), (q[0], q[0] + q[1]));
     let joints = [[0.0, 0.0], [a.cos(), a.sin()], [a.cos() + b.cos(), a.sin() + b.sin()]];
@@ -22,7 +22,7 @@ fn jacobian(q: DVectorView<'_, f64>, mut jacobian: DMatrixViewMut<'_, f64>) {
     }
 }
 
-/// Follows u = N(x, t) π(x) for three seconds, where π pulls every joint towards the end of its stroke.
+/// Follows u = N(x, t) π(x) for three seconds; π pulls every joint towards the end of its motion.
 fn follow(constraint: &dyn PfaffianConstraint, start: &DVector<f64>) -> Result<DVector<f64>, ConstraintError> {
     let (mut q, wished, time_step) = (start.clone(), dvector![0.9, -0.6, -1.2], 1e-3);
     for step in 0..3000 {

@@ -2,19 +2,19 @@ use nalgebra::{DMatrix, DVectorView, Point3, UnitVector3, Vector3};
 
 use crate::{ConstraintError, PfaffianConstraint};
 
-/// Cosine up to which two directions count as perpendicular, and deviation from 1 up to which a length counts as 1.
+/// Largest cosine between perpendicular directions, and largest deviation of a unit vector's length from 1.
 const DIRECTION_TOLERANCE: f64 = 1e-9;
 
-/// A thin flat plate: a strip of the plane `normal`·p = `distance`, between two parallel edges and endless along them.
+/// A thin flat plate: a strip of the plane `normal`·p = `distance` between two parallel edges, infinite along them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Plate {
-    /// Across the plate. Motion in this direction, to and fro, is what the plate blocks.
+    /// Normal of the plate. It blocks motion in this direction, forwards and backwards.
     pub normal: UnitVector3<f64>,
     /// Signed distance of the plane from the origin, in metres.
     pub distance: f64,
-    /// In the plate, from one edge to the other; perpendicular to `normal`.
+    /// Direction in the plate from one edge to the other; perpendicular to `normal`.
     pub along: UnitVector3<f64>,
-    /// Where the two edges are, `along`·p in metres. Either may be infinite.
+    /// Positions of the two edges, `along`·p in metres. Either may be infinite.
     pub edges: [f64; 2],
 }
 
@@ -37,11 +37,11 @@ impl Plate {
     }
 }
 
-/// Plates that points cannot pass: while a plate blocks a point, the point may not move along the plate's normal,
-/// `nᵀ ṗ = 0`. Where nothing is blocked, nothing is constrained, so that the rank switches with the state.
+/// Plates that points cannot pass: while a plate blocks a point, the point may not move along the plate's normal, `nᵀ ṗ = 0`.
+/// If no point is blocked, there is no constraint, so that the rank switches with the state.
 ///
-/// The state is the positions of all points one below the other, (3·points), in metres; A has one row for each point
-/// and plate that blocks it, points in order. A wall with a gap is two plates:
+/// The state consists of the stacked positions of all points, (3·points), in metres; A has one row for each point and plate
+/// that blocks it, in the order of the points. A wall with a gap is two plates:
 ///
 /// ```
 /// use constraints::{Barrier, PfaffianConstraint, Plate};
@@ -65,7 +65,7 @@ pub struct Barrier {
 }
 
 impl Barrier {
-    /// `plates` that act on each of `n_points` points while these are nearer to them than `influence`, in metres.
+    /// `plates` that act on each of `n_points` points within the distance `influence`, in metres.
     ///
     /// # Errors
     /// [`ConstraintError::NoPoint`], [`ConstraintError::Influence`], [`ConstraintError::PlateInSpace`] or
@@ -86,7 +86,7 @@ impl Barrier {
         &self.plates
     }
 
-    /// The influence distance: how near to its plane a plate blocks, in metres.
+    /// The influence distance: distance from its plane up to which a plate blocks, in metres.
     pub fn influence(&self) -> f64 {
         self.influence
     }
@@ -101,7 +101,7 @@ impl PfaffianConstraint for Barrier {
         if state.len() != self.dim() {
             return Err(ConstraintError::State { found: state.len(), expected: self.dim() });
         }
-        // Comparing with NaN would tell a point that is nowhere to be free.
+        // Comparisons with NaN would make the point unconstrained.
         if let Some(coordinate) = state.iter().position(|value| !value.is_finite()) {
             return Err(ConstraintError::StateNotFinite { coordinate, value: state[coordinate] });
         }

@@ -2,11 +2,10 @@ use nalgebra::{DMatrix, DVectorView};
 
 use crate::{ConstraintError, NullSpaceProjector};
 
-/// A constraint A(x,t) u = 0 on the velocity u (2), which may change with state and time, in number of rows too.
+/// A constraint A(x,t) u = 0 on the velocity u (2). A may change with state and time, including its number of rows.
 ///
-/// An obstacle is a row that is there only where it touches: a type that holds what it needs and answers
-/// [`PfaffianConstraint::matrix`]. For a hand in a plane or on a line there is
-/// [`PointConstraint`](crate::PointConstraint).
+/// An obstacle is a row that exists only during contact: a type that implements [`PfaffianConstraint::matrix`]. For a
+/// hand in a plane or on a line there is [`PointConstraint`](crate::PointConstraint).
 ///
 /// ```
 /// use constraints::{ConstraintError, PfaffianConstraint};
@@ -38,17 +37,17 @@ pub trait PfaffianConstraint: Send + Sync {
     /// Dimension n of the state.
     fn dim(&self) -> usize;
 
-    /// A(x,t), (k, n), at a state (n) and a time in seconds. k may be 0, may exceed n, and rows may depend on each
-    /// other; the rows' units and lengths do not matter.
+    /// A(x,t), (k, n), at a state (n) and a time in seconds. k may be 0 or exceed n, and rows may be linearly dependent;
+    /// the rows' units and lengths do not matter.
     ///
     /// # Errors
-    /// Where A cannot be computed: [`ConstraintError::State`] or [`ConstraintError::Jacobian`].
+    /// [`ConstraintError::State`] or [`ConstraintError::Jacobian`] if A cannot be computed.
     fn matrix(&self, state: DVectorView<'_, f64>, time: f64) -> Result<DMatrix<f64>, ConstraintError>;
 
     /// N(x,t) = I − A⁺A (3), with the [default tolerance](NullSpaceProjector::DEFAULT_TOLERANCE).
     ///
     /// # Errors
-    /// Those of [`PfaffianConstraint::matrix`], [`ConstraintError::Columns`] when A does not have n columns, otherwise as
+    /// Those of [`PfaffianConstraint::matrix`], [`ConstraintError::Columns`] if A does not have n columns, otherwise as
     /// [`NullSpaceProjector::new`].
     fn null_space_projector(
         &self,
@@ -80,7 +79,7 @@ impl PfaffianConstraint for Unconstrained {
     }
 }
 
-/// A pointer to a constraint is that constraint.
+/// Implements the trait for pointers to constraints.
 macro_rules! behind {
     ($($pointer:ty),*) => {$(
         impl<C: PfaffianConstraint + ?Sized> PfaffianConstraint for $pointer {

@@ -1,6 +1,6 @@
 use thiserror::Error;
 
-/// Why a constraint cannot be used. All numbers count from 0.
+/// Reasons why a constraint cannot be used. All numbers count from 0.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum ConstraintError {
@@ -9,14 +9,14 @@ pub enum ConstraintError {
         "constraint matrix, row {row}, column {column}: {value} is not a finite number; mend what computes A(x, t)"
     )]
     NotFinite {
-        /// Row of the entry: which of the k constraints.
+        /// Row of the entry: index of the constraint.
         row: usize,
-        /// Column of the entry: which dimension of the state.
+        /// Column of the entry: dimension of the state.
         column: usize,
         /// The entry itself.
         value: f64,
     },
-    /// A state does not have the dimension that the constraint is for.
+    /// The dimension of a state differs from the constraint's.
     #[error("the state has {found} coordinates, the constraint is for {expected}; give one for each dimension")]
     State {
         /// Coordinates of the state.
@@ -27,7 +27,7 @@ pub enum ConstraintError {
     /// A coordinate of the state is NaN or infinite.
     #[error("coordinate {coordinate} of the state is {value}, not a finite number; mend what computes the state")]
     StateNotFinite {
-        /// The first coordinate at fault.
+        /// The first faulty coordinate.
         coordinate: usize,
         /// Its value.
         value: f64,
@@ -35,10 +35,10 @@ pub enum ConstraintError {
     /// The Jacobian of a point cannot be computed.
     #[error("the point has no Jacobian at this state: {reason}")]
     Jacobian {
-        /// The message of the function that computes it.
+        /// The error message of the function that computes it.
         reason: String,
     },
-    /// A does not have one column for each dimension of the state.
+    /// The number of columns of A differs from the dimension of the state.
     #[error("the constraint matrix has {found} columns, the state {expected} dimensions; A is (k, n)")]
     Columns {
         /// Columns of A.
@@ -52,16 +52,16 @@ pub enum ConstraintError {
         f64::EPSILON
     )]
     Tolerance {
-        /// The tolerance given.
+        /// The given tolerance.
         tolerance: f64,
     },
-    /// A point was given no direction in which it may not move.
+    /// No direction was given in which a point may not move.
     #[error("the point has no normal; give at least one row of 2 or 3 coordinates, or use `Unconstrained`")]
     NoNormal,
     /// A normal of a point is zero, or not finite.
     #[error("normal {row} is {normal:?}; a direction is finite and not zero")]
     Normal {
-        /// The first row at fault.
+        /// The first faulty row.
         row: usize,
         /// Its coordinates.
         normal: Vec<f64>,
@@ -69,10 +69,10 @@ pub enum ConstraintError {
     /// A switching constraint has no phases.
     #[error("there is no constraint to switch between; give at least one, or use `Unconstrained`")]
     NoPhase,
-    /// The start times of a switching constraint are not finite or do not rise.
+    /// The start times of a switching constraint are not finite or not ascending.
     #[error("phase {phase} starts at {start} s: start times must be finite and each later than the one before")]
     StartTime {
-        /// The first phase at fault.
+        /// The first faulty phase.
         phase: usize,
         /// Its start time, in seconds.
         start: f64,
@@ -87,31 +87,31 @@ pub enum ConstraintError {
         /// The number of dimensions of phase 0.
         expected: usize,
     },
-    /// A barrier was given no point to stop.
+    /// A barrier was given no point.
     #[error("a barrier acts on at least one point; a state of n points has 3n coordinates")]
     NoPoint,
     /// The influence distance of a barrier is not a positive, finite length.
     #[error("a barrier's influence distance is {influence} m; it must be positive and finite")]
     Influence {
-        /// The distance given, in metres.
+        /// The given distance, in metres.
         influence: f64,
     },
-    /// A plate has no place in space.
+    /// A plate's position or orientation is invalid.
     #[error(
         "plate {plate}: the normal and the direction along it must be of length 1 and perpendicular, the distance finite"
     )]
     PlateInSpace {
-        /// Which plate.
+        /// Index of the plate.
         plate: usize,
     },
-    /// A plate has its edges in the wrong order, in one place or at NaN.
+    /// A plate's edges are in the wrong order, equal, or NaN.
     #[error("plate {plate}: its edges are at {from} m and {to} m; the first must be below the second")]
     PlateEdges {
-        /// Which plate.
+        /// Index of the plate.
         plate: usize,
-        /// The edge given first, in metres.
+        /// The first edge, in metres.
         from: f64,
-        /// The edge given second, in metres.
+        /// The second edge, in metres.
         to: f64,
     },
 }

@@ -1,8 +1,8 @@
 //! Constraints on motion, and the projectors onto their null spaces.
 //!
-//! A Pfaffian constraint requires A(x,t) u = 0 (2) of the velocity u at every instant: a hand that wipes a table must
-//! not leave its plane. A system with the policy π(x) then moves with u = N(x,t) π(x), where N = I − A⁺A (3) is the
-//! orthogonal projection onto the null space of A. Constraints that push (A u = b, b ≠ 0) are not represented.
+//! A Pfaffian constraint requires A(x,t) u = 0 (2) of the velocity u at every instant; for instance, a hand that wipes a
+//! table must not leave its plane. A system with the policy π(x) then moves with u = N(x,t) π(x), where N = I − A⁺A (3)
+//! is the orthogonal projection onto the null space of A. Constraints that push (A u = b, b ≠ 0) are not represented.
 //!
 //! - [`PfaffianConstraint`]: the trait of all constraints; implement it for your own.
 //! - [`LinearConstraint`], [`Unconstrained`], [`Switching`]: the same A everywhere, none, and one after another in time.
@@ -43,7 +43,7 @@ pub use point::PointConstraint;
 pub use projector::NullSpaceProjector;
 pub use switching::Switching;
 
-/// The program of the README, compiled.
+/// Compiles the program in the README.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;

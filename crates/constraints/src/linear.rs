@@ -6,7 +6,7 @@ use crate::{ConstraintError, NullSpaceProjector, PfaffianConstraint};
 #[derive(Debug, Clone, PartialEq)]
 pub struct LinearConstraint {
     matrix: DMatrix<f64>,
-    // A never changes, so neither does N: found once.
+    // A is constant, and so N is computed once.
     projector: NullSpaceProjector,
 }
 

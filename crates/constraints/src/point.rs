@@ -7,12 +7,12 @@ use crate::{ConstraintError, PfaffianConstraint};
 /// A point of a robot, such as a hand, that may not move along given directions: A(x) = nᵀJ(x) (27), where J(x) is the
 /// Jacobian of the point's position with respect to the state.
 ///
-/// In space one normal keeps the point in a plane, two keep it on a line; on the plane one normal keeps it on a line.
-/// Planes and lines go through wherever the point is: the constraint is on its velocity.
+/// In space one normal keeps the point in a plane, two keep it on a line; in a plane one normal keeps it on a line.
+/// Because the constraint is on the velocity, the plane or line passes through the point's current position.
 ///
-/// The Jacobian is a function, so that this works for any robot library and any mechanism. It is given a state x (n)
-/// and a matrix (m, n) to fill; its error becomes [`ConstraintError::Jacobian`]. What it leaves unfilled is NaN and
-/// refused by the projector.
+/// The Jacobian is a function, so that any robot library and any mechanism can be used. It receives a state x (n) and a
+/// matrix (m, n) to fill; its error becomes [`ConstraintError::Jacobian`]. Entries that it does not fill are NaN, which
+/// the projector refuses.
 ///
 /// ```
 /// use std::convert::Infallible;
@@ -47,8 +47,8 @@ where
     J: Fn(DVectorView<'_, f64>, DMatrixViewMut<'_, f64>) -> Result<(), E> + Send + Sync,
     E: Display,
 {
-    /// The constraint that forbids motion along the rows of `normals` (k, m), of any length, to a point in m dimensions
-    /// (2 or 3) whose `jacobian` (m, n) belongs to a state of dimension n = `dim`.
+    /// The constraint that forbids motion of a point in m dimensions (2 or 3) along the rows of `normals` (k, m), which
+    /// may have any length. The point's `jacobian` (m, n) is that for a state of dimension n = `dim`.
     ///
     /// # Errors
     /// [`ConstraintError::NoNormal`] without a row, [`ConstraintError::Normal`] for a row that is zero or not finite.
@@ -89,7 +89,7 @@ where
     }
 }
 
-/// nᵀJ (27), compiled here and not wherever a Jacobian comes from.
+/// nᵀJ (27), compiled once and not for every type of Jacobian.
 fn along(normals: &DMatrix<f64>, jacobian: &DMatrix<f64>) -> DMatrix<f64> {
     normals * jacobian
 }

@@ -4,16 +4,16 @@ use crate::ConstraintError;
 
 /// The null-space projector N = I − A⁺A (3) of a constraint matrix A (k, n).
 ///
-/// N depends on the row space of A alone, so an orthonormal basis Q of that space, (n, rank), is all that is kept:
-/// N v = v − Q Qᵀv, in 4·n·rank operations, without N or A⁺ ever being formed.
+/// N depends only on the row space of A. Therefore only an orthonormal basis Q of that space, (n, rank), is stored: N v
+/// = v − Q Qᵀv, in 4·n·rank operations, without forming N or A⁺.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NullSpaceProjector {
     row_space: DMatrix<f64>,
 }
 
 impl NullSpaceProjector {
-    /// The tolerance of [`NullSpaceProjector::new`]: a thousand times the rounding of a Jacobian, and far below any
-    /// difference that a constraint can mean.
+    /// The tolerance of [`NullSpaceProjector::new`]: a thousand times the rounding error of a Jacobian, and far below
+    /// any meaningful difference between constraints.
     pub const DEFAULT_TOLERANCE: f64 = 1e-12;
 
     /// N of the matrix A (k, n) with the [default tolerance](Self::DEFAULT_TOLERANCE). k may be 0 or exceed n.
@@ -24,11 +24,11 @@ impl NullSpaceProjector {
         Self::with_tolerance(matrix, Self::DEFAULT_TOLERANCE)
     }
 
-    /// N of the matrix A (k, n), where `tolerance` decides what is rounding. It is relative, and is used twice:
-    /// a row whose largest entry is at most `tolerance` times that of the whole matrix is no constraint; and, all rows
-    /// scaled to length 1, rows are taken one by one, the farthest from the span of those before first, and one whose
-    /// distance to that span is at most `tolerance` adds none.
-    /// So neither c·A nor rows in other units change N.
+    /// N of the matrix A (k, n), where `tolerance` is the threshold for rounding errors. It is relative, and is used
+    /// twice. First, rows whose largest entry is at most `tolerance` times that of the whole matrix are ignored. Then
+    /// all rows are scaled to length 1 and processed one by one, always the one farthest from the span of those before.
+    /// A row whose distance to that span is at most `tolerance` does not extend it. As a result, neither c·A nor rows in
+    /// other units change N.
     ///
     /// # Errors
     /// [`ConstraintError::NotFinite`], or [`ConstraintError::Tolerance`] unless machine epsilon ≤ `tolerance` < 1.
@@ -43,7 +43,7 @@ impl NullSpaceProjector {
         Ok(NullSpaceProjector { row_space: orthonormal(unit_rows(matrix, tolerance), tolerance) })
     }
 
-    /// N = I, for no constraint.
+    /// N = I, without constraints.
     pub fn identity(dim: usize) -> Self {
         NullSpaceProjector { row_space: DMatrix::zeros(dim, 0) }
     }
@@ -58,14 +58,14 @@ impl NullSpaceProjector {
         self.row_space.ncols()
     }
 
-    /// Replaces v (n) by N v. Allocates nothing.
+    /// Replaces v (n) by N v. Does not allocate.
     ///
     /// # Panics
-    /// If v has another length than n.
+    /// If the length of v is not n.
     pub fn project_into(&self, mut vector: DVectorViewMut<'_, f64>) {
         assert_eq!(vector.len(), self.dim(), "the projector of an n-dimensional state takes vectors of length n");
         if self.rank() == self.dim() {
-            // Nothing is free. Subtraction would leave rounding, and a system that cannot move would creep.
+            // No direction is free. Subtraction would leave rounding errors, and a fully constrained system would creep.
             vector.fill(0.0);
         } else {
             remove(self.row_space.as_view(), vector);
@@ -75,7 +75,7 @@ impl NullSpaceProjector {
     /// N v, (n).
     ///
     /// # Panics
-    /// If v has another length than n.
+    /// If the length of v is not n.
     pub fn project(&self, vector: DVectorView<'_, f64>) -> DVector<f64> {
         let mut projected = vector.into_owned();
         self.project_into(projected.as_view_mut());
@@ -92,11 +92,11 @@ impl NullSpaceProjector {
     }
 }
 
-/// The rows of A that are not rounding, each scaled to length 1, as columns (n, at most k).
+/// The rows of A that exceed rounding errors, each scaled to length 1, as columns (n, at most k).
 fn unit_rows(matrix: &DMatrix<f64>, tolerance: f64) -> DMatrix<f64> {
     let negligible = tolerance * matrix.amax();
     let rows = matrix.row_iter().filter(|row| row.amax() > negligible).map(|row| {
-        // Divided by the largest entry first, so that no square overflows or vanishes.
+        // Divided by the largest entry first, so that no square overflows or underflows.
         let largest = row.amax();
         row.transpose().map(|entry| entry / largest).normalize()
     });
@@ -104,8 +104,8 @@ fn unit_rows(matrix: &DMatrix<f64>, tolerance: f64) -> DMatrix<f64> {
     if rows.is_empty() { DMatrix::zeros(matrix.ncols(), 0) } else { DMatrix::from_columns(&rows) }
 }
 
-/// An orthonormal basis of the span of unit vectors (n, k), by Gram–Schmidt that always takes the vector farthest from
-/// the span of those before: a QR decomposition with pivoting, which shows the rank.
+/// An orthonormal basis of the span of unit vectors (n, k), by Gram–Schmidt orthogonalization that always takes the
+/// vector farthest from the span of those before: a rank-revealing QR decomposition with pivoting.
 fn orthonormal(mut vectors: DMatrix<f64>, tolerance: f64) -> DMatrix<f64> {
     let mut rank = 0;
     while rank < vectors.nrows().min(vectors.ncols()) {
@@ -117,7 +117,8 @@ fn orthonormal(mut vectors: DMatrix<f64>, tolerance: f64) -> DMatrix<f64> {
         vectors.swap_columns(rank, farthest);
         let (basis, mut rest) = vectors.columns_range_pair_mut(..rank, rank..);
         let (mut direction, mut rest) = rest.columns_range_pair_mut(0, 1..);
-        // The remainder of a nearly dependent row is mostly rounding in the basis' directions: a second pass removes it.
+        // The remainder of a nearly dependent row consists mostly of rounding errors along the basis; a second pass
+        // removes them.
         direction.normalize_mut();
         remove(basis.as_view(), direction.as_view_mut());
         direction.normalize_mut();

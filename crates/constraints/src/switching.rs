@@ -3,9 +3,9 @@ use nalgebra::{DMatrix, DVectorView};
 use crate::{ConstraintError, NullSpaceProjector, PfaffianConstraint, Unconstrained};
 
 /// Constraints that follow each other in time: each holds from its start time (inclusive) until the next one starts.
-/// Before the first start nothing is constrained.
+/// Before the first start there is no constraint.
 ///
-/// For phases of different types take `Switching<Box<dyn PfaffianConstraint>>`.
+/// For phases of different types use `Switching<Box<dyn PfaffianConstraint>>`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Switching<C> {
     dim: usize,
@@ -32,7 +32,7 @@ impl<C: PfaffianConstraint> Switching<C> {
         Ok(Switching { dim, phases })
     }
 
-    /// The constraint that holds at `time`, or none before the first start.
+    /// The constraint that holds at `time`; `None` before the first start.
     pub fn at(&self, time: f64) -> Option<&C> {
         let started = self.phases.partition_point(|(start, _)| *start <= time);
         started.checked_sub(1).map(|phase| &self.phases[phase].1)

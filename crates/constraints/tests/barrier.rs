@@ -1,4 +1,4 @@
-//! Plates that stop points: which row is there when, what N then removes, and what is refused.
+//! Plates that stop points: the rows of A at each state, the motion that N removes, and refused input.
 #![allow(clippy::unwrap_used, reason = "a barrier that cannot be made fails the test")]
 
 use constraints::{Barrier, ConstraintError, NullSpaceProjector, PfaffianConstraint, Plate};
@@ -17,7 +17,7 @@ fn direction() -> impl Strategy<Value = UnitVector3<f64>> {
         .prop_filter_map("too short to have a direction", |v| Unit::try_new(Vector3::from_column_slice(&v), 0.1))
 }
 
-/// A plate anywhere, turned in any way.
+/// A plate with random position and orientation.
 fn plate() -> impl Strategy<Value = Plate> {
     (direction(), direction(), -1.0..1.0f64, -1.0..1.0f64, 0.01..1.0f64, 0..4u8).prop_filter_map(
         "parallel directions",
@@ -87,7 +87,7 @@ proptest! {
         }
     }
 
-    /// Euler steps of N π from any start: no step moves a blocked point along a normal, and every other point moves freely.
+    /// Euler steps of N π from any start: no step moves a blocked point along a normal, and all other points move freely.
     #[test]
     fn a_roll_out_obeys_at_every_step(
         plates in vec(plate(), 1..4), influence in 0.05..0.5f64, start in vec(-1.0..1.0f64, 6),
@@ -169,7 +169,7 @@ fn bad_barriers_are_refused() {
     assert!(matches!(nan, Err(ConstraintError::PlateEdges { plate: 0, from, to: 1.0 }) if from.is_nan()));
 }
 
-/// A point that is nowhere is neither blocked nor free.
+/// A point without a finite position is neither blocked nor free.
 #[test]
 fn states_that_are_none_are_refused() {
     let barrier = Barrier::new(with_a_gap(0.4, 0.1), 0.05, 2).unwrap();

@@ -1,4 +1,4 @@
-//! Constraints that change with state and time, and what is refused.
+//! Constraints that change with state and time, and refused input.
 
 use constraints::{
     ConstraintError, LinearConstraint, NullSpaceProjector, PfaffianConstraint, Switching, Unconstrained,
@@ -7,7 +7,7 @@ use nalgebra::{DMatrix, DVector, DVectorView, dmatrix, dvector};
 use proptest::collection::vec;
 use proptest::prelude::*;
 
-/// A wall at x₁ = 1, felt from the moment it is touched, in a space whose dimension it can get wrong.
+/// A wall at x₁ = 1 that acts on contact. The number of columns of A can be wrong.
 struct Wall {
     columns: usize,
 }
@@ -46,7 +46,7 @@ proptest! {
         let switching = Switching::new(phases).unwrap();
         let (state, now) = (DVector::from_vec(state), f64::from(time) * step);
 
-        // The literal reading: look through all of them.
+        // The literal definition: search all of them.
         let holds = starts.iter().rfind(|&&start| start <= time).map(|&start| row(&angle(start)));
         prop_assert_eq!(switching.at(now), holds.as_ref());
         let expected = match &holds {

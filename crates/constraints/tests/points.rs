@@ -1,4 +1,4 @@
-//! Points that stay in a plane or on a line: the literal nᵀJ, and the motion of the point itself.
+//! Points that stay in a plane or on a line, compared with the literal nᵀJ and with the motion of the point itself.
 
 use std::{convert::Infallible, f64::consts::PI};
 
@@ -7,14 +7,14 @@ use nalgebra::{DMatrix, DMatrixViewMut, DVector, DVectorView, Vector3, dmatrix, 
 use proptest::collection::vec;
 use proptest::prelude::*;
 
-/// An arm in space: link i of length `lengths[i]` turns by qᵢ about the z axis for even i, the y axis for odd i.
+/// An arm in space: link i of length `lengths[i]` rotates by qᵢ about the z axis for even i, the y axis for odd i.
 #[derive(Debug, Clone)]
 struct Arm {
     lengths: Vec<f64>,
 }
 
 impl Arm {
-    /// The tip of the links from `first` on, as seen from where the first begins.
+    /// The tip of the links from `first` on, relative to the base of the first.
     fn tip_from(&self, first: usize, q: DVectorView<'_, f64>) -> Vector3<f64> {
         let beyond = (first..self.lengths.len()).rev().fold(Vector3::zeros(), |tip, link| {
             nalgebra::Rotation3::from_axis_angle(&axis(link), q[link]) * (tip + Vector3::x() * self.lengths[link])
@@ -27,7 +27,7 @@ impl Arm {
         self.tip_from(0, q.as_view())
     }
 
-    /// Column j: axis j, turned by all joints before it, times the way from joint j to the tip.
+    /// Column j: axis j, rotated by all joints before it, times the vector from joint j to the tip.
     #[allow(clippy::unnecessary_wraps, reason = "what a constraint is given may fail")]
     fn jacobian(&self, q: DVectorView<'_, f64>, mut jacobian: DMatrixViewMut<'_, f64>) -> Result<(), Infallible> {
         for joint in 0..self.lengths.len() {
@@ -43,7 +43,7 @@ fn axis(link: usize) -> nalgebra::Unit<Vector3<f64>> {
     if link.is_multiple_of(2) { Vector3::z_axis() } else { Vector3::y_axis() }
 }
 
-/// An arm, a configuration, one or two normals (k, 3) and a wish (n).
+/// An arm, a configuration, one or two normals (k, 3) and a desired velocity (n).
 fn case() -> impl Strategy<Value = (Arm, DVector<f64>, DMatrix<f64>, DVector<f64>)> {
     (3..7usize, 1..3usize).prop_flat_map(|(n, k)| {
         let arm = vec(0.3..1.5f64, n).prop_map(|lengths| Arm { lengths });
@@ -72,8 +72,8 @@ proptest! {
         prop_assert_eq!(constraint.normals(), &normals);
     }
 
-    /// nᵀ(p(x + du) − p(x)) vanishes faster than du, and p does move where it may: what was wished along the normals is
-    /// gone, and nothing else.
+    /// nᵀ(p(x + du) − p(x)) vanishes faster than du, and p moves in the free directions: only the desired motion along
+    /// the normals is removed.
     #[test]
     fn the_point_stays_in_its_plane_or_on_its_line((arm, q, normals, wish) in case(), time in 0.0..9.0f64) {
         let constraint = PointConstraint::new(normals.clone(), q.len(), |q, j| arm.jacobian(q, j)).unwrap();
@@ -81,7 +81,7 @@ proptest! {
         let d = 1e-5;
         let moved = arm.tip(&(&q + d * &u)) - arm.tip(&(&q - d * &u));
         for normal in normals.row_iter() {
-            // Central differences: the error is of third order in d, with arms at most 9 long.
+            // Central differences: the error is of third order in d; arms are at most 9 long.
             let along = (normal * moved)[0] / normal.norm();
             prop_assert!(along.abs() / (2.0 * d) < 1e-7, "{along}");
         }
@@ -90,7 +90,7 @@ proptest! {
         prop_assert!((jacobian * &u - moved / (2.0 * d)).amax() < 1e-7);
     }
 
-    /// Lengths of the normals mean nothing.
+    /// The lengths of the normals do not matter.
     #[test]
     fn longer_normals_forbid_the_same((arm, q, normals, wish) in case(), factor in 0.01..100.0f64) {
         let free = |normals| {
@@ -103,7 +103,7 @@ proptest! {
     }
 }
 
-/// Two links stretched along x cannot move their tip along x: where there is nothing to forbid, the rank drops.
+/// Two links stretched along x cannot move their tip along x: if the forbidden motion is impossible, the rank drops.
 #[test]
 fn a_stretched_arm_is_free_along_itself() {
     let tip = |q: DVectorView<'_, f64>, mut jacobian: DMatrixViewMut<'_, f64>| {
@@ -145,7 +145,7 @@ fn bad_points_are_refused() {
     assert!(matches!(error, ConstraintError::NotFinite { row: 0, column: 0, value } if value.is_nan()));
 }
 
-/// The cause is not lost on the way.
+/// The reason for the error is passed on.
 #[test]
 fn a_function_that_cannot_answer_says_why() {
     let broken = |_: DVectorView<'_, f64>, mut jacobian: DMatrixViewMut<'_, f64>| {

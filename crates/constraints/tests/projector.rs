@@ -1,12 +1,12 @@
-//! The projector against its defining identities (3), the literal I − A⁺A, and matrices that tempt it.
+//! Compares the projector with its defining identities (3) and the literal I − A⁺A, also for ill-conditioned matrices.
 
 use constraints::{ConstraintError, NullSpaceProjector};
 use nalgebra::{DMatrix, DVector, dmatrix, dvector};
 use proptest::collection::vec;
 use proptest::prelude::*;
 
-/// A (k, n) of a chosen rank, its singular values between 0.1 and 10, with an orthonormal basis of its row space (n, rank) and
-/// a vector (n).
+/// A (k, n) with a chosen rank and singular values between 0.1 and 10, an orthonormal basis of its row space (n, rank), and a
+/// vector (n).
 #[derive(Debug)]
 struct Case {
     matrix: DMatrix<f64>,
@@ -28,7 +28,7 @@ fn orthonormal(size: usize) -> impl Strategy<Value = DMatrix<f64>> {
     vec(-1.0..1.0, size * size).prop_map(move |entries| DMatrix::from_vec(size, size, entries).qr().q())
 }
 
-/// Any k from 0 to n + 2 and any rank that fits.
+/// Any k from 0 to n + 2 and any possible rank.
 fn case() -> impl Strategy<Value = Case> {
     let shape = (1..8usize).prop_flat_map(|n| (Just(n), 0..=n + 2));
     let shape = shape.prop_flat_map(|(n, k)| (Just(n), Just(k), 0..=n.min(k)));
@@ -70,9 +70,9 @@ proptest! {
         let mut literal = DMatrix::identity(n, n);
         if !case.matrix.is_empty() {
             let svd = case.matrix.clone().svd(true, true);
-            // nalgebra's decomposition is wrong for about one rank-deficient matrix in a hundred, which shows in that
-            // its factors do not multiply to A. An error of 1e-13 there is one of 1e-11 in N, as no singular value is below
-            // 0.1, and 3e-10 in the projection of a vector of length 26.
+            // nalgebra's decomposition is wrong for about one rank-deficient matrix in a hundred; then the product of its
+            // factors is not A. An error of 1e-13 there corresponds to one of 1e-11 in N, as no singular value is below 0.1,
+            // and to 3e-10 in the projection of a vector of length 26.
             prop_assume!((svd.clone().recompose().unwrap() - &case.matrix).amax() < 1e-13);
             literal -= svd.pseudo_inverse(1e-6).unwrap() * &case.matrix;
         }
@@ -115,7 +115,7 @@ proptest! {
         }
         same(in_other_units)?;
 
-        // M A with an invertible M; some rows of A, or some of zeros, make up the size that M was drawn with.
+        // M A with an invertible M; rows of A or of zeros are appended to match the drawn size of M.
         let k = left.nrows();
         let rows = case.matrix.nrows();
         let stretch = DMatrix::from_diagonal(&DVector::from_column_slice(&stretches[..k]));
@@ -123,7 +123,7 @@ proptest! {
         if k >= rows {
             same(mixing * case.matrix.clone().resize_vertically(k, 0.0))?;
         }
-        // Each row three times in a row.
+        // Each row repeated three times.
         same(DMatrix::from_fn(3 * rows, case.vector.len(), |row, column| case.matrix[(row / 3, column)]))?;
     }
 
@@ -160,7 +160,7 @@ proptest! {
         let matrix = DMatrix::from_diagonal(&DVector::from_vec(lengths)) * rows;
         let projector = NullSpaceProjector::with_tolerance(&matrix, tolerance).unwrap();
         prop_assert_eq!(projector.rank(), if angle > exponent { 2 } else { 1 });
-        // Of two rows, the plane is as exact as their rounding allows; of two that count as one, either may be the one.
+        // The plane of two rows is as exact as their rounding allows; if two rows count as one, either may be used.
         let (free, exact_to) = if angle > exponent { (0.0, 1e-14 / sine) } else { (1.0, 1e-14 + sine) };
         let expected = &turn * DMatrix::from_diagonal(&dvector![0.0, free, 1.0]) * turn.transpose();
         prop_assert!((projector.matrix() - expected).amax() <= exact_to);
@@ -205,7 +205,7 @@ fn badly_scaled_matrices() {
 
 #[test]
 fn a_small_row_is_obeyed_as_exactly_as_a_large_one() {
-    // Rows in this order are the harder ones: a pseudo-inverse by singular values leaves up to 1e-6 of the first.
+    // Rows in this order are harder: a pseudo-inverse by singular values leaves up to 1e-6 of the first.
     let matrix = dmatrix![3e-9, 1e-9, -2e-9, 5e-9; 1.0, 2.0, 3.0, 4.0];
     let projected = NullSpaceProjector::new(&matrix).unwrap().project(dvector![0.3, -0.8, 0.5, 0.2].as_view());
     assert!((matrix.row(0) * 1e9 * projected).amax() < 1e-14);

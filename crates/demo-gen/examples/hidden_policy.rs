@@ -1,4 +1,4 @@
-//! Simulates constrained movements and prints how much of the policy their constraints hide.
+//! Simulates constrained movements and prints the share of the policy that their constraints hide.
 
 #![allow(clippy::print_stdout, reason = "a program")]
 
@@ -14,7 +14,7 @@ fn main() -> Result<(), DemoGenError> {
     let demonstrations = demonstrations(&recordings)?;
     println!("{} movements, {} samples", demonstrations.n_trajectories(), demonstrations.n_samples());
 
-    // What an observer records is N(x, t) π(x); π itself is in the truth.
+    // An observer records N(x, t) π(x); π itself is part of the truth.
     let first = &recordings[0];
     for sample in [0, 19, 20, 39] {
         let wanted = first.truth.actions.column(sample);

@@ -5,7 +5,7 @@ use kinematics::KinematicsError;
 use motion::MotionError;
 use thiserror::Error;
 
-/// What must share the state space of the potential or policy.
+/// The quantity whose dimension must equal that of the potential or policy.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Part {
     /// The start state.
@@ -23,7 +23,7 @@ impl fmt::Display for Part {
     }
 }
 
-/// What of a simulated system left the finite numbers.
+/// The quantity of a simulated system that is not finite.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Quantity {
     /// The state x.
@@ -47,7 +47,7 @@ impl fmt::Display for Quantity {
     }
 }
 
-/// Why no demonstration could be made. All numbers count from 0.
+/// The reason why no demonstration could be generated. All indices count from 0.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum DemoGenError {
@@ -57,45 +57,45 @@ pub enum DemoGenError {
         /// The time step given, in seconds.
         time_step: f64,
     },
-    /// A movement needs two samples.
+    /// A movement must have at least two samples.
     #[error("{n_samples} sample(s) asked for; a movement has at least 2")]
     TooFewSamples {
-        /// The number asked for.
+        /// The requested number.
         n_samples: usize,
     },
-    /// A step cannot be made of no step.
+    /// The number of sub-steps must not be 0.
     #[error("0 sub-steps asked for; 1 is the plain Euler step")]
     NoSubStep,
-    /// Potential or policy, constraint and start do not live in one space.
+    /// Potential or policy, constraint and start have different dimensions.
     #[error("the {part} has {found} dimensions, the potential or policy {expected}; all must share one state space")]
     Dimensions {
-        /// What differs from the potential or policy.
+        /// The quantity that differs from the potential or policy.
         part: Part,
         /// Its number of dimensions.
         found: usize,
         /// The number of dimensions of the potential or policy.
         expected: usize,
     },
-    /// The movement left the finite numbers.
+    /// The movement became infinite or NaN.
     #[error(
         "sample {sample}: the {quantity} is not finite; start inside the potential's domain, \
          or take a smaller time step or more sub-steps"
     )]
     Diverged {
-        /// The first sample at fault.
+        /// The first sample that is not finite.
         sample: usize,
-        /// What is not finite there.
+        /// The quantity that is not finite there.
         quantity: Quantity,
     },
     /// The constraint could not be evaluated.
     #[error("constraint at sample {sample}: {source}")]
     Constraint {
-        /// The sample at which, or on the way from which, it was evaluated.
+        /// The sample at which, or on the way from which, the constraint was evaluated.
         sample: usize,
-        /// What is wrong with it.
+        /// The reason.
         source: ConstraintError,
     },
-    /// A matrix cannot hold the Jacobian of a hand.
+    /// The matrix does not have the shape of a hand's Jacobian.
     #[error(
         "the Jacobian of this hand is ({}, {}), not ({}, {}); normals have 3 coordinates, states one for each joint",
         expected.0, expected.1, found.0, found.1
@@ -106,38 +106,38 @@ pub enum DemoGenError {
         /// Rows and columns of the Jacobian.
         expected: (usize, usize),
     },
-    /// No trajectory was asked for, or no recording given.
+    /// No trajectory was requested, or no recording given.
     #[error("there is no trajectory; ask for or give at least one")]
     NoTrajectory,
-    /// Some constraint would hold for no sample.
+    /// Some constraint would not apply to any sample.
     #[error("{redraw:?} with {n_samples} samples: each constraint must hold for at least one")]
     Redraw {
         /// The rule given.
         redraw: crate::Redraw,
-        /// Samples of a trajectory.
+        /// Number of samples of a trajectory.
         n_samples: usize,
     },
-    /// A policy needs more dimensions than asked for.
+    /// The requested dimension is too small for this policy.
     #[error("{found} dimension(s) asked for; this policy lives in {least} or more")]
     TooFewDimensions {
-        /// The number asked for.
+        /// The requested dimension.
         found: usize,
-        /// The least number.
+        /// The smallest allowed dimension.
         least: usize,
     },
-    /// The edge between planes has no width.
+    /// The width of the edge between planes is negative or not finite.
     #[error("edge {edge}: it must be a finite width, 0 (a kink) or more, in units of the state")]
     Edge {
         /// The width given.
         edge: f64,
     },
-    /// The noise is not a share.
+    /// The noise share is negative or not finite.
     #[error("noise share {share}: it must be a finite number, 0 or more, of each dimension's standard deviation")]
     NoiseShare {
         /// The share given.
         share: f64,
     },
-    /// The ratio of signal to noise is no number of decibels.
+    /// The signal-to-noise ratio is not finite.
     #[error(
         "signal-to-noise ratio {decibels} dB: it must be a finite number; record without noise instead of infinity"
     )]
@@ -145,25 +145,25 @@ pub enum DemoGenError {
         /// The ratio given, in decibels.
         decibels: f64,
     },
-    /// Velocities are needed that were not recorded.
+    /// The recording lacks the velocities that are required.
     #[error("trajectory {trajectory} has no velocities; noise on velocities needs them")]
     NoVelocities {
-        /// Which trajectory.
+        /// Index of the trajectory.
         trajectory: usize,
     },
-    /// The task of a constraint A u = b cannot be drawn.
+    /// The range of the task b of a constraint A u = b is invalid.
     #[error("task {largest}: it must be a finite number, 0 or more")]
     Task {
         /// The largest task given.
         largest: f64,
     },
-    /// A surface cannot be tilted so far.
+    /// The tilt of a surface is out of range.
     #[error("tilt {largest}: it must be an angle from 0 up to a right angle, in radians")]
     Tilt {
         /// The largest tilt given, in radians.
         largest: f64,
     },
-    /// A robot has not the joints that a posture is for.
+    /// The robot's number of joints differs from that of the posture.
     #[error("the robot has {found} joints, the posture {expected}; take a robot of as many")]
     Joints {
         /// Joints of the robot.
@@ -171,50 +171,50 @@ pub enum DemoGenError {
         /// Joints of the posture.
         expected: usize,
     },
-    /// One of several trajectories cannot be made.
+    /// One of several trajectories cannot be generated.
     #[error("trajectory {trajectory}: {source}")]
     InTrajectory {
-        /// Which trajectory.
+        /// Index of the trajectory.
         trajectory: usize,
-        /// What is wrong with it.
+        /// The reason.
         source: Box<DemoGenError>,
     },
-    /// The range of start states is not a number from 0 up.
+    /// The range of start states is negative or not finite.
     #[error("start range {range}: it must be a finite number, 0 or more, in the unit of the state")]
     StartRange {
         /// The range given.
         range: f64,
     },
-    /// A standard deviation is not a number from 0 up.
+    /// A standard deviation is negative or not finite.
     #[error("{name} {value}: it must be a finite number, 0 or more, in radians")]
     Deviation {
-        /// Of what.
+        /// Name of the quantity.
         name: &'static str,
         /// The deviation given.
         value: f64,
     },
-    /// A rate is not a number above 0.
+    /// A rate is not positive or not finite.
     #[error("task rate {rate}: it must be a finite number above 0, in 1/s")]
     TaskRate {
         /// The rate given.
         rate: f64,
     },
-    /// The variance of start states is not a number from 0 up.
+    /// The variance of start states is negative or not finite.
     #[error("start variance {variance}: it must be a finite number, 0 or more, in units of the coordinates squared")]
     StartVariance {
         /// The variance given.
         variance: f64,
     },
-    /// No start state was found that is free of collisions.
+    /// No collision-free start state was found.
     #[error(
         "{draws} start states drawn around the posture, all in self-collision; take a freer posture, or an SRDF that \
          disables pairs of links which may overlap"
     )]
     NoFreeStart {
-        /// How many were drawn.
+        /// Number of start states drawn.
         draws: usize,
     },
-    /// The gap of a wall cannot be drawn.
+    /// The parameters of the gap's distribution are invalid.
     #[error(
         "gap {mean} m with standard deviation {deviation} m, at least {least} m: all must be finite, \
          the last two 0 or more"
@@ -227,19 +227,19 @@ pub enum DemoGenError {
         /// The least gap given, in metres.
         least: f64,
     },
-    /// No start posture was found with both palms where a grasp begins.
+    /// No start posture was found with both palms in the start region of a grasp.
     #[error(
         "{draws} start postures drawn, none with both palms before the body and each on its side; \
          widen `start_depth`, lower `start_side`, or move the table"
     )]
     NoNaturalStart {
-        /// How many were drawn.
+        /// Number of start postures drawn.
         draws: usize,
     },
-    /// The robot is not what the scenario needs, or refuses a configuration.
+    /// The robot does not suit the scenario, or rejects a configuration.
     #[error(transparent)]
     Robot(#[from] KinematicsError),
-    /// What was recorded is not a valid set of movements.
+    /// The recorded data are not a valid set of movements.
     #[error(transparent)]
     Motion(#[from] MotionError),
 }

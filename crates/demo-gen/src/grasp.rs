@@ -6,11 +6,11 @@ use serde::Serialize;
 use crate::recording::record_each;
 use crate::{DemoGenError, GraspScene, Recording, RollOut, UpperBody};
 
-/// Start postures drawn in a row, none of them natural, after which the scene itself must be at fault.
+/// Number of successive start postures, none of them natural, after which the scene itself must be at fault.
 const MOST_DRAWS: usize = 10_000;
 
-/// Grasping a ball through a wall with a gap (Section 4.2): both palms reach for the ball's sides, each trajectory with
-/// a gap of another width.
+/// Grasping a ball through a wall with a gap (Section 4.2): both palms reach for the ball's sides. The width of the
+/// gap varies between trajectories.
 ///
 /// ```
 /// use demo_gen::{Grasp, UpperBody};
@@ -25,12 +25,12 @@ const MOST_DRAWS: usize = 10_000;
 /// ```
 #[derive(Debug, Clone, Serialize)]
 pub struct Grasp {
-    /// The robot; it is not stored with the rest, its URDF is.
+    /// The robot. It is not serialised with the rest; its URDF describes it.
     #[serde(skip)]
     pub body: UpperBody,
     /// Ball, table, wall.
     pub scene: GraspScene,
-    /// How a movement is simulated. Default 100 samples, 0.5 s apart, plain Euler.
+    /// Parameters of the simulation. Default 100 samples, 0.5 s apart, plain Euler.
     pub roll_out: RollOut,
     /// Number of trajectories K. Default 100.
     pub n_trajectories: usize,
@@ -38,18 +38,18 @@ pub struct Grasp {
     pub gap_mean: f64,
     /// Standard deviation of that width, metres. Default 0.1.
     pub gap_deviation: f64,
-    /// Narrower gaps are widened to this, metres. Default 0.17: the ball fits through with a centimetre on either side, so
-    /// that every movement can arrive.
+    /// Minimum width to which narrower gaps are widened, metres. Default 0.17: the ball fits through with a centimetre on
+    /// either side, so that every movement can arrive.
     pub gap_least: f64,
     /// Variance of start postures around "ready", in rad² or m². Default 0.1.
     pub start_variance: f64,
-    /// Start palms are before this x, metres. Default: where the wall is not felt.
+    /// Start palms are before this x, metres. Default: where the wall has no influence.
     pub start_depth: f64,
-    /// Start palms are farther than this to their side, |y| in metres. Default 0.02.
+    /// Each start palm is farther than this from the middle, on its own side, |y| in metres. Default 0.02.
     pub start_side: f64,
 }
 
-/// What is drawn for one trajectory.
+/// The random values of one trajectory.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GraspStart {
     /// Configuration of the robot, (n).
@@ -79,20 +79,20 @@ impl Grasp {
         }
     }
 
-    /// One data set: K [movements](Self::movement), each from a [start](Self::start) of its own. A longer data set
+    /// One data set: K [movements](Self::movement), each from a separate [start](Self::start). A longer data set
     /// begins like a shorter one.
     ///
     /// # Errors
-    /// [`DemoGenError::NoTrajectory`], or [`DemoGenError::InTrajectory`] with what [`Grasp::start`] and
-    /// [`Grasp::movement`] say.
+    /// [`DemoGenError::NoTrajectory`], or [`DemoGenError::InTrajectory`] with those of [`Grasp::start`] and
+    /// [`Grasp::movement`].
     pub fn record<R: Rng + ?Sized>(&self, rng: &mut R) -> Result<Vec<Recording>, DemoGenError> {
         record_each(self.n_trajectories, || self.movement(&self.start(rng)?))
     }
 
     /// Start posture and gap of one trajectory.
     ///
-    /// The generator is asked for start postures as [`UpperBody::start`] does, until one is natural: palms before the
-    /// body and each on its side, none below the table; and then for the gap.
+    /// Draws start postures from the generator like [`UpperBody::start`], until one is natural: palms before the
+    /// body and each on its side, none below the table. Then draws the gap.
     ///
     /// # Errors
     /// [`DemoGenError::Gap`], [`DemoGenError::NoNaturalStart`], or those of [`UpperBody::start`].
@@ -117,7 +117,7 @@ impl Grasp {
     /// The movement of the palms from a start through its gap.
     ///
     /// # Errors
-    /// Those of [`RollOut::record`]; [`DemoGenError::Constraint`] too for a wall that cannot be built.
+    /// Those of [`RollOut::record`]; also [`DemoGenError::Constraint`] for an invalid wall.
     pub fn movement(&self, start: &GraspStart) -> Result<Recording, DemoGenError> {
         let wall = self.scene.wall_with_gap(start.gap);
         let wall = wall.map_err(|source| DemoGenError::Constraint { sample: 0, source })?;

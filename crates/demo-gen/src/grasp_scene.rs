@@ -4,30 +4,31 @@ use serde::Serialize;
 
 use crate::Parabola;
 
-/// Both hands.
+/// Number of hands.
 const N_HANDS: usize = 2;
 
-/// Where Section 4.2 happens: a ball on a table behind a wall, in the heel's frame (x forward, y left, z up), metres.
+/// The scene of Section 4.2: a ball on a table behind a wall, in the heel's frame (x forward, y left, z up), metres.
 ///
-/// The state is the positions of the left and the right palm, (6).
+/// The state consists of the positions of the left and the right palm, (6).
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct GraspScene {
     /// Centre of the ball. Default (0.7, 0, 0.65).
     pub ball: Point3<f64>,
-    /// Default 0.15.
+    /// Diameter of the ball. Default 0.15.
     pub ball_diameter: f64,
-    /// Height of the table's top. Default 0.575: the ball lies on it. The table shapes start states and pictures; it does
-    /// not constrain the movement.
+    /// Height of the table's top. Default 0.575: the ball lies on it. The table affects start states and pictures, but does not
+    /// constrain the movement.
     pub table_top: f64,
     /// Nearest and farthest x of the table. Default 0.45, 1.05.
     pub table_depth: [f64; 2],
-    /// The table's |y| is at most this. Default 0.6.
+    /// Half the width of the table, |y|. Default 0.6.
     pub table_half_width: f64,
-    /// The wall, or what else stands between robot and ball, is in the plane of this x. Default 0.35, half way to the ball.
+    /// The wall, or another obstacle between robot and ball, is in the plane of this x. Default 0.35, half way to the ball.
     pub wall: f64,
-    /// From which distance to its plane the wall is felt. Default 0.09.
+    /// Distance to its plane within which the wall constrains hands. Default 0.09.
     pub wall_influence: f64,
-    /// The obstacle that no demonstration shows is as wide as this to either side of the middle. Default 0.125, as wide as the mean gap.
+    /// Half the width of the obstacle that no demonstration contains, around the middle. Default 0.125, so that it is as wide as the
+    /// mean gap.
     pub obstacle_half_width: f64,
 }
 
@@ -47,7 +48,7 @@ impl Default for GraspScene {
 }
 
 impl GraspScene {
-    /// Where the palms hold the ball, (6): at its left and its right.
+    /// The target positions of the palms at the ball, (6): at its left and its right.
     pub fn target(&self) -> DVector<f64> {
         let side = Vector3::y() * (self.ball_diameter / 2.0);
         let [left, right] = [self.ball + side, self.ball - side];
@@ -60,7 +61,7 @@ impl GraspScene {
     }
 
     /// The wall of the demonstrations: two plates, with a gap (metres, 0 or more) between them around the middle. A hand
-    /// beside the gap and nearer to the wall than its influence cannot move along x.
+    /// beside the gap that is within the wall's influence cannot move along x.
     ///
     /// # Errors
     /// Those of [`Barrier::new`], for a wall or gap that is not finite or an influence distance that is not positive.
@@ -69,7 +70,7 @@ impl GraspScene {
         self.barrier(&[[edge, f64::INFINITY], [f64::NEG_INFINITY, -edge]])
     }
 
-    /// The obstacle that no demonstration shows: one plate in the wall's plane, around the middle.
+    /// The obstacle that no demonstration contains: one plate in the wall's plane, around the middle.
     ///
     /// # Errors
     /// Those of [`Barrier::new`], for an obstacle without width or an influence distance that is not positive.
@@ -82,7 +83,7 @@ impl GraspScene {
         Barrier::new(edges.iter().map(plate).collect(), self.wall_influence, N_HANDS)
     }
 
-    /// Whether a point is under or in the table: over its area, but not above its top.
+    /// Whether a point is under or in the table: within its area, but not above its top.
     pub fn is_below_the_table(&self, point: &Point3<f64>) -> bool {
         let [nearest, farthest] = self.table_depth;
         let over = (nearest..=farthest).contains(&point.x) && point.y.abs() <= self.table_half_width;

@@ -5,20 +5,20 @@ use nalgebra::{DMatrix, DVector, DVectorView};
 use crate::tasks::task_constraint::TaskConstraint;
 use crate::{DemoGenError, Quantity, Recording, Truth};
 
-/// Who acts, and what constrains it.
+/// A policy and its constraint.
 pub(crate) struct System<'a> {
     actor: Actor<'a>,
     constraint: &'a dyn PfaffianConstraint,
-    /// The constraint again, where its right side is not 0.
+    /// The same constraint, if its right side is not 0.
     task: Option<&'a dyn TaskConstraint>,
 }
 
-/// A policy, and what is known of its potential.
+/// A policy, with its potential if that is known.
 #[derive(Clone, Copy)]
 pub(crate) enum Actor<'a> {
     /// The policy −∇φ of a potential.
     OfPotential(&'a dyn Potential),
-    /// A policy of which no potential is known.
+    /// A policy without a known potential.
     OfPolicy(&'a dyn Policy),
 }
 
@@ -30,7 +30,8 @@ impl Actor<'_> {
         }
     }
 
-    /// The action at a state (n) and the potential there, if it is known, all finite; errors name `sample`.
+    /// The action at a state (n), and the potential there if it is known. All values must be finite; errors name
+    /// `sample`.
     fn act(self, state: DVectorView<'_, f64>, sample: usize) -> Result<(DVector<f64>, Option<f64>), DemoGenError> {
         let (action, potential) = match self {
             Actor::OfPotential(potential) => {
@@ -45,7 +46,7 @@ impl Actor<'_> {
     }
 }
 
-/// Everything that is true of the system at one time. All of it is finite.
+/// The complete state of the system at one time. All values are finite.
 pub(crate) struct Instant {
     pub(crate) state: DVector<f64>,
     pub(crate) velocity: DVector<f64>,
@@ -55,12 +56,12 @@ pub(crate) struct Instant {
 }
 
 impl<'a> System<'a> {
-    /// A(x, t) u = 0.
+    /// A system under A(x, t) u = 0.
     pub(crate) fn constrained(actor: Actor<'a>, constraint: &'a dyn PfaffianConstraint) -> Self {
         System { actor, constraint, task: None }
     }
 
-    /// A(x) u = b(x).
+    /// A system under A(x) u = b(x).
     pub(crate) fn with_task(actor: Actor<'a>, task: &'a dyn TaskConstraint) -> Self {
         System { actor, constraint: task, task: Some(task) }
     }
@@ -92,7 +93,7 @@ fn finite(values: &[f64], quantity: Quantity, sample: usize) -> Result<(), DemoG
     if all { Ok(()) } else { Err(DemoGenError::Diverged { sample, quantity }) }
 }
 
-/// What an observer sees of two or more instants, `time_step` seconds apart.
+/// The observed part of two or more instants, `time_step` seconds apart.
 pub(crate) fn observed(instants: &[Instant], time_step: f64) -> Result<Trajectory, DemoGenError> {
     let states = columns(instants, |instant| &instant.state);
     Ok(Trajectory::new(states, time_step)?.with_velocities(columns(instants, |instant| &instant.velocity))?)

@@ -1,19 +1,19 @@
-//! Demonstrations made by simulation: a system that follows a known potential under constraints, with the truth kept
-//! beside what an observer sees.
+//! Simulated demonstrations: a system follows a known potential under constraints. The truth is recorded
+//! separately from the observations.
 //!
 //! - [`Parabola`] (24), [`Sinusoidal`] (26): potentials φ; the demonstrated policy is π = −∇φ.
-//! - [`RollOut`]: follows u = N(x,t) π(x) (3) from one start and yields a [`Recording`]; any policy too, without its truth.
-//! - [`Recording`]: `observed`, a trajectory, and [`Truth`], what only a judge may see.
-//! - [`demonstrations`]: the observed part of many recordings; a learner is given nothing else.
+//! - [`RollOut`]: follows u = N(x,t) π(x) (3) from one start and yields a [`Recording`]; also follows any policy, without its truth.
+//! - [`Recording`]: `observed`, a trajectory, and [`Truth`], which only judges may use.
+//! - [`demonstrations`]: the observed part of many recordings, the only input of a learner.
 //! - [`ToySystem`]: the paper's two-dimensional toy, many recordings from one generator.
 //! - [`ThreeLinkArm`]: a planar arm whose hand stays on a line.
-//! - [`UpperBody`]: the paper's humanoid, its posture "ready" and start states around it; [`HandInPlane`]: it moves with
+//! - [`UpperBody`]: the paper's humanoid, its posture "ready" and start states around it; [`HandInPlane`]: its movements with
 //!   one hand in a plane.
-//! - [`hand_jacobian`]: a robot's hand for a constraint; [`n_leaving_limits`]: movements that a real one would not make.
+//! - [`hand_jacobian`]: a robot's hand for a constraint; [`n_leaving_limits`]: counts movements that a real robot could not make.
 //! - [`Grasp`]: reaching for a ball through a wall with a gap, in a [`GraspScene`].
-//! - [`beyond`]: policies of other shapes, with and without a potential, in 2 to 22 dimensions.
+//! - [`beyond`]: other policies, with and without a potential, in 2 to 22 dimensions.
 //! - [`tasks`]: constraints A(x) u = b(x) with a task b: a limit cycle, and an arm that wipes.
-//! - [`with_position_noise`], [`with_velocity_noise`]: the same recordings through noisy eyes.
+//! - [`with_position_noise`], [`with_velocity_noise`]: add observation noise to recordings.
 //!
 //! ```
 //! use constraints::LinearConstraint;
@@ -65,7 +65,7 @@ pub use roll_out::RollOut;
 pub use toy::ToySystem;
 pub use toy_potential::ToyPotential;
 
-/// The program of the README, compiled.
+/// Compiles the README's program.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;

@@ -5,15 +5,15 @@ use rand_distr::StandardNormal;
 
 use crate::{DemoGenError, Recording};
 
-/// The same movements, seen through Gaussian noise: to each dimension of each true state is added noise of `share` times
-/// that dimension's standard deviation (divided by the number of samples) over all true states. Velocities stay as they
-/// were observed, and the truth stays true.
+/// The same movements, observed with Gaussian noise: each dimension of each true state gets noise of `share` times
+/// that dimension's standard deviation (divided by the number of samples) over all true states. Observed velocities and the
+/// truth do not change.
 ///
-/// The generator is asked once for each number, trajectory after trajectory and sample after sample, whatever the share:
+/// Draws one number from the generator for each value, by trajectory and sample, whatever the share:
 /// the same seed gives the same noise, scaled.
 ///
 /// # Errors
-/// [`DemoGenError::NoiseShare`], [`DemoGenError::NoTrajectory`], or [`DemoGenError::Motion`] when the recordings do not
+/// [`DemoGenError::NoiseShare`], [`DemoGenError::NoTrajectory`], or [`DemoGenError::Motion`] if the recordings do not
 /// share one state space.
 pub fn with_position_noise<R: Rng + ?Sized>(
     recordings: &[Recording],
@@ -38,10 +38,10 @@ pub fn with_position_noise<R: Rng + ?Sized>(
     noisy.collect()
 }
 
-/// The same movements with white noise on the observed velocities, of equal variance in all dimensions: the mean of |u|² over all samples is
-/// `decibels` above that of the noise. States stay as they were observed, and the truth stays true.
+/// The same movements with white noise on the observed velocities, of equal variance in all dimensions: the mean of |u|² over all
+/// samples is `decibels` above that of the noise. Observed states and the truth do not change.
 ///
-/// The generator is asked once for each number, trajectory after trajectory and sample after sample, whatever the ratio.
+/// Draws one number from the generator for each value, by trajectory and sample, whatever the ratio.
 ///
 /// # Errors
 /// [`DemoGenError::SignalToNoise`], [`DemoGenError::NoTrajectory`], or [`DemoGenError::NoVelocities`].

@@ -2,9 +2,9 @@ use motion::Potential;
 use nalgebra::{DVector, DVectorView, DVectorViewMut};
 use serde::Serialize;
 
-/// `φ(x) = w‖x − x_c‖²` (24): a bowl, whose policy `−2w(x − x_c)` goes straight to its centre.
+/// `φ(x) = w‖x − x_c‖²` (24): a bowl, whose policy `−2w(x − x_c)` leads straight to its centre.
 ///
-/// The paper has w = 0.05 throughout.
+/// The paper uses w = 0.05 throughout.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Parabola {
     /// w, in 1/s.
@@ -30,9 +30,9 @@ impl Potential for Parabola {
     }
 }
 
-/// φ(x) = a sin(x₁) cos(x₂) (26) on the plane: hills, hollows and saddles without end.
+/// φ(x) = a sin(x₁) cos(x₂) (26) on the plane: infinitely many maxima, minima and saddles.
 ///
-/// The paper has a = 0.1.
+/// The paper uses a = 0.1.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Sinusoidal {
     /// a, in units of the state squared per second.

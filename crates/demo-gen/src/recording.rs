@@ -4,29 +4,29 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::DemoGenError;
 
-/// One simulated movement: what is seen of it, and what is true of it.
+/// One simulated movement: the observations and the truth.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Recording {
     /// States and velocities as an observer records them, noise included.
     pub observed: Trajectory,
-    /// What led to them. For judges only.
+    /// The underlying truth. For judges only.
     pub truth: Truth,
 }
 
-/// What an observer cannot see, at each of the N samples of a movement. Always free of noise.
+/// Hidden quantities at each of the N samples of a movement, always free of noise.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Truth {
     /// The states `x_i`, (n, N).
     pub states: DMatrix<f64>,
-    /// The potential `φ(x_i)`, (N); empty where the policy descends none.
+    /// The potential `φ(x_i)`, (N); empty if the policy has no potential.
     pub potential: DVector<f64>,
     /// The unconstrained policy `π(x_i) = −∇φ(x_i)`, (n, N), in units of the state per second.
     pub actions: DMatrix<f64>,
-    /// The projectors `N(x_i, t_i)` (3) that held.
+    /// The projectors `N(x_i, t_i)` (3) of the active constraints.
     pub projectors: Vec<NullSpaceProjector>,
 }
 
-/// All that a learner is given: the observed part of the recordings, in their order.
+/// The input of a learner: the observed part of the recordings, in their order.
 ///
 /// # Errors
 /// [`MotionError::Empty`] or [`MotionError::Dimensions`].
@@ -46,7 +46,7 @@ pub(crate) fn record_each(
     (0..n_trajectories).map(|trajectory| record().map_err(in_trajectory(trajectory))).collect()
 }
 
-/// Whether starts can be drawn from [−`range`, `range`).
+/// Checks that starts can be drawn from [−`range`, `range`).
 pub(crate) fn check_start_range(range: f64) -> Result<(), DemoGenError> {
     if range.is_finite() && range >= 0.0 { Ok(()) } else { Err(DemoGenError::StartRange { range }) }
 }

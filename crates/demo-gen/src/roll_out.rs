@@ -6,15 +6,15 @@ use serde::Serialize;
 use crate::instant::{Actor, Instant, System, observed};
 use crate::{DemoGenError, Part, Recording};
 
-/// How a movement is simulated: x ← x + δt N(x,t) π(x), from time 0.
+/// Parameters of the simulation of a movement: x ← x + δt N(x,t) π(x), from time 0.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct RollOut {
     /// Time δt between two samples, in seconds. Default 1.
     pub time_step: f64,
-    /// Number of samples N, the start included. Default 40.
+    /// Number of samples N, including the start. Default 40.
     pub n_samples: usize,
-    /// Euler steps from one sample to the next. Default 1, the paper's plain Euler; more come nearer to the flow of the
-    /// policy in continuous time.
+    /// Number of Euler steps from one sample to the next. Default 1, the paper's plain Euler; more steps approximate the
+    /// flow of the policy in continuous time better.
     pub sub_steps: usize,
 }
 
@@ -45,7 +45,7 @@ impl RollOut {
         self.recording(&System::constrained(Actor::OfPotential(&potential), &constraint), start)
     }
 
-    /// The movement of any policy from `start` (n), as [`RollOut::record`] makes that of a potential: N states with their
+    /// The movement of any policy from `start` (n), like that of a potential by [`RollOut::record`]: N states with their
     /// velocities `N(x_i, t_i) π(x_i)`.
     ///
     /// ```

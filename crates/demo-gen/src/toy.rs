@@ -8,7 +8,7 @@ use crate::recording::{check_start_range, record_each};
 use crate::{DemoGenError, Recording, Redraw, RollOut, ToyPotential};
 
 impl Redraw {
-    /// The samples from which a new constraint holds.
+    /// Indices of the samples at which a new constraint begins.
     pub(crate) fn first_samples(self, n_samples: usize) -> Result<Vec<usize>, DemoGenError> {
         match self {
             Redraw::Every(samples) if samples > 0 => Ok((0..n_samples).step_by(samples).collect()),
@@ -20,8 +20,8 @@ impl Redraw {
     }
 }
 
-/// The toy system of Section 4.1: a point on the plane that follows a potential, each trajectory under random linear
-/// constraints αᵀu = 0, α ~ N(0, I₂), that change on the way.
+/// The toy system of Section 4.1: a point on the plane that follows a potential. Each trajectory is subject to random linear
+/// constraints αᵀu = 0, α ~ N(0, I₂), that change along the way.
 ///
 /// ```
 /// use demo_gen::{ToyPotential, ToySystem, demonstrations};
@@ -65,12 +65,12 @@ impl Default for ToySystem {
 impl ToySystem {
     /// One data set: K movements.
     ///
-    /// Trajectory after trajectory, the generator is asked for the start x₁, x₂ and then for the α of each constraint
+    /// For each trajectory, draws from the generator the start x₁, x₂ and then the α of each constraint
     /// in order of time, so that the same seed gives the same bits, and a longer data set begins like a shorter one.
     ///
     /// # Errors
     /// [`DemoGenError::NoTrajectory`], [`DemoGenError::TooFewSamples`], [`DemoGenError::Redraw`],
-    /// [`DemoGenError::StartRange`], or [`DemoGenError::InTrajectory`] with what [`RollOut::record`] says.
+    /// [`DemoGenError::StartRange`], or [`DemoGenError::InTrajectory`] with those of [`RollOut::record`].
     pub fn record<R: Rng + ?Sized>(&self, rng: &mut R) -> Result<Vec<Recording>, DemoGenError> {
         let roll_out = RollOut { n_samples: self.n_samples, time_step: self.time_step, ..RollOut::default() };
         roll_out.check()?;

@@ -1,4 +1,4 @@
-//! What cannot be simulated is refused, with the place of the fault.
+//! Invalid simulations are refused, with the location of the fault.
 
 use constraints::{ConstraintError, PfaffianConstraint, Unconstrained};
 use demo_gen::{DemoGenError, Parabola, Part, Quantity, Redraw, RollOut, ToyPotential, ToySystem};
@@ -7,7 +7,7 @@ use nalgebra::{DMatrix, DVector, DVectorView, DVectorViewMut, dvector};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
-/// Says the same everywhere.
+/// A potential with constant value and gradient.
 struct Flat {
     value: f64,
     gradient: f64,
@@ -27,7 +27,7 @@ impl Potential for Flat {
     }
 }
 
-/// One row that turns into something else after a while.
+/// One row that changes at a given time.
 struct Later {
     time: f64,
     entry: f64,
@@ -89,10 +89,10 @@ fn roll_outs() {
         (refused(default, &bowl(0.1), &free, &dvector![1.0]), dimensions(Part::Start, 1)),
         (refused(default, &bowl(0.1), &Unconstrained { dim: 3 }, &start), dimensions(Part::Constraint, 3)),
         (refused(default, &bowl(0.1), &free, &dvector![0.0, inf]), diverged(0, Quantity::State)),
-        // Each step multiplies the state by −10: 5.5·10^(2·154) is the first potential beyond the largest number.
+        // Each step multiplies the state by −10; 5.5·10^(2·154) is the first potential that exceeds the largest float.
         (refused(long, &bowl(5.5), &free, &start), diverged(154, Quantity::Potential)),
         (refused(default, &Flat { value: 0.0, gradient: inf }, &free, &start), diverged(0, Quantity::Policy)),
-        // A step of 1.5e308 is possible once.
+        // A step of 1.5e308 is possible only once.
         (refused(default, &Flat { value: 0.0, gradient: 1.5e308 }, &free, &start), diverged(2, Quantity::State)),
         (
             refused(
@@ -107,7 +107,7 @@ fn roll_outs() {
             refused(default, &bowl(0.1), &Later { time: 7.0, entry: inf, columns: 2 }, &start),
             in_constraint(7, not_finite.clone()),
         ),
-        // Samples are half a second apart, and 7.2 s lies on the way from sample 14.
+        // Samples are half a second apart; 7.2 s is on the way from sample 14.
         (
             refused(fine, &bowl(0.1), &Later { time: 7.2, entry: inf, columns: 2 }, &start),
             in_constraint(14, not_finite),
@@ -126,7 +126,7 @@ fn roll_outs() {
     ));
 }
 
-/// Acts the same everywhere.
+/// A policy with a constant action.
 struct Steady {
     action: f64,
 }
@@ -167,9 +167,9 @@ fn roll_outs_of_policies() {
         (refused(default, &still, &Unconstrained { dim: 3 }, &start), dimensions(Part::Constraint, 3)),
         (refused(default, &still, &free, &dvector![0.0, inf]), diverged(0, Quantity::State)),
         (refused(default, &Steady { action: inf }, &free, &start), diverged(0, Quantity::Policy)),
-        // A step of 1.5e308 is possible once.
+        // A step of 1.5e308 is possible only once.
         (refused(default, &Steady { action: 1.5e308 }, &free, &start), diverged(2, Quantity::State)),
-        // A policy's potential is not asked for: the steps end with the numbers, not with their squares.
+        // A policy's potential is not evaluated, so that the state overflows and not its square.
         (
             refused(RollOut { n_samples: 500, ..default }, &NegativeGradient(bowl(5.5)), &free, &start),
             diverged(308, Quantity::Policy),

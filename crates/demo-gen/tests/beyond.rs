@@ -1,4 +1,5 @@
-//! Policies beyond the paper's: gradients by differences, formulas as they are printed, and who is constrained when.
+//! Policies beyond the paper's: gradients checked by differences, printed formulas, and constraints on the right
+//! movements.
 
 use constraints::PfaffianConstraint;
 use demo_gen::beyond::{
@@ -87,7 +88,7 @@ proptest! {
         let literal = -pull * &state + turn * fading * &swirl.skew * &state;
         let action = swirl.action(state.as_view());
         prop_assert!((&action - literal).amax() < 1e-13);
-        // What turns takes no part in the way to the middle.
+        // The rotation does not contribute to the motion towards the centre.
         prop_assert!((action.dot(&state) + pull * state.norm_squared()).abs() < 1e-12);
     }
 
@@ -117,7 +118,7 @@ proptest! {
         prop_assert!((at(&state) - axes).amax() < 1e-12);
     }
 
-    /// From around its start a line is written to its end, and left no further than its corridor is wide.
+    /// From a start near its beginning, a line is written to its end, within the width of its corridor.
     #[test]
     fn handwriting_comes_to_its_end(seed in any::<u64>(), dx in -0.2..0.2f64, dy in -0.2..0.2f64) {
         let line = Handwriting::draw(&mut generator(seed));
@@ -129,7 +130,7 @@ proptest! {
         prop_assert!(line.action(state.as_view()).norm() < 0.02);
     }
 
-    /// What is recorded is true: u = Nπ, Nu = u, and everyone is constrained as asked for.
+    /// The recorded truth is consistent: u = Nπ, Nu = u, and constraints act on the requested movements.
     #[test]
     fn recordings_are_true(seed in any::<u64>(), which in 0..6usize, constraint in 0..4usize, k in 1..5usize) {
         let policy = [
@@ -166,10 +167,10 @@ proptest! {
     }
 }
 
-/// Constraints of their own change every so many samples; a shared one never does.
+/// Separate constraints change after the given number of samples; a shared one never does.
 #[test]
 fn constraints_are_drawn_anew() {
-    // All start and stay at one place, so that nothing but a new draw can turn the projector.
+    // All movements stay at their start, so that only a new draw can change the projector.
     let roll_out = RollOut { n_samples: 8, sub_steps: 1, time_step: 1e-12 };
     let turned = |constraint| {
         let system = BeyondSystem {

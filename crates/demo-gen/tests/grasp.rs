@@ -1,4 +1,4 @@
-//! Grasping: what is drawn, that the wall is obeyed at every step, that truth and scene agree, and what is refused.
+//! Grasping: random draws, the wall's constraint at every step, consistency of truth and scene, and refused input.
 
 use crate::robots::upper_body;
 use constraints::PfaffianConstraint;
@@ -74,7 +74,8 @@ proptest! {
         }
     }
 
-    /// A u = 0, rank and N at every sample, from the scene's own figures; the wall is never crossed beside the gap.
+    /// A u = 0, rank and N at every sample, recomputed from the scene's dimensions; movements cross the wall only in
+    /// the gap.
     #[test]
     fn the_wall_is_obeyed_at_every_step(grasp in grasp(), seed in any::<u64>()) {
         let recordings = grasp.record(&mut rng(seed)).unwrap();
@@ -105,7 +106,7 @@ proptest! {
         }
     }
 
-    /// Rule (9), its factor 1/(1 − wδt) taken out, finds the true potential along every plain Euler movement.
+    /// Rule (9), without its factor 1/(1 − wδt), recovers the true potential along every plain Euler movement.
     #[test]
     fn rule_9_finds_the_potential(grasp in grasp(), seed in any::<u64>()) {
         let grasp = Grasp { roll_out: RollOut { sub_steps: 1, ..grasp.roll_out }, ..grasp };
@@ -136,7 +137,7 @@ proptest! {
     }
 }
 
-/// The wall stops nearly all movements for a while, and none of them to the end; gaps too narrow would.
+/// The wall stops nearly all movements for a while, but none until the end; narrower gaps would.
 #[test]
 fn every_movement_gets_through() {
     let held_up = |grasp: &Grasp| {

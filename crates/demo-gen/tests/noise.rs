@@ -1,4 +1,4 @@
-//! Noise on what is observed, none on what is true.
+//! Noise affects the observations, not the truth.
 
 use demo_gen::{DemoGenError, Recording, ToySystem, with_position_noise};
 use motion::{MotionError, Trajectory};
@@ -49,14 +49,15 @@ proptest! {
     fn its_size_is_a_share_of_each_dimension(share in 0.01..1.0f64, seed in any::<u64>(), stretch in 0.1..10.0f64) {
         let mut clean = recordings(200, seed);
         for recording in &mut clean {
-            // The second dimension in another unit.
+            // Changes the unit of the second dimension.
             recording.truth.states.row_mut(1).scale_mut(stretch);
         }
         let seen = noisy(&clean, share, seed);
         for dimension in 0..2 {
             let noise = row(&seen, dimension, noise_of);
             let spread = row(&clean, dimension, |recording| recording.truth.states.clone()).variance().sqrt();
-            // 5000 values have standard errors of 1 % in their deviation, 1.4 % in their mean; six of them are allowed.
+            // For 5000 values the standard errors are 1 % of the deviation and 1.4 % of the mean; six of them are
+            // allowed.
             prop_assert!((noise.variance().sqrt() / (share * spread) - 1.0).abs() < 0.06);
             prop_assert!(noise.mean().abs() < 0.085 * share * spread);
         }

@@ -1,4 +1,4 @@
-//! The potentials (24) and (26): their values, and their gradients against differences.
+//! The potentials (24) and (26): their values, and their gradients compared with differences.
 
 use demo_gen::{Parabola, Sinusoidal, ToyPotential};
 use motion::Potential;

@@ -1,4 +1,4 @@
-//! The arm and the upper body: what is drawn, the constraint obeyed at every step, what is refused.
+//! The arm and the upper body: random draws, the constraint at every step, and refused input.
 
 use std::f64::consts::PI;
 
@@ -21,8 +21,8 @@ fn jacobian(chain: &Chain, q: DVectorView<'_, f64>) -> Matrix3xX<f64> {
     jacobian
 }
 
-/// The direction among the first `axes` of space in which a hand does not move in a whole recording, and by how much it
-/// does all the same relative to its fastest motion: the smallest singular direction of all its velocities.
+/// The direction, within the first `axes` axes, in which a hand moves least in a whole recording, and its motion there
+/// relative to its largest: the smallest singular direction of all its velocities.
 fn still_direction(recording: &Recording, chain: &Chain, axes: usize) -> (Vector3<f64>, f64) {
     let mut scatter = DMatrix::zeros(axes, axes);
     for (q, u) in recording.truth.states.column_iter().zip(velocities(recording).column_iter()) {
@@ -105,7 +105,7 @@ fn roll_outs() -> impl Strategy<Value = RollOut> {
     })
 }
 
-/// A u = 0 at every sample, with A = nᵀJ for one n, rank one everywhere, and nothing else forbidden.
+/// A u = 0 at every sample, with A = nᵀJ for one n and rank one everywhere; nothing else is forbidden.
 fn obeys(recording: &Recording, hand: &Chain, axes: usize, roll_out: RollOut) -> Result<(), TestCaseError> {
     let (normal, _) = still_direction(recording, hand, axes);
     let truth = &recording.truth;
@@ -116,7 +116,7 @@ fn obeys(recording: &Recording, hand: &Chain, axes: usize, roll_out: RollOut) ->
         let a = normal.transpose() * jacobian(hand, q);
         prop_assert!((&a * u)[0].abs() < 1e-9, "{} at sample {sample}", (&a * u)[0]);
         prop_assert_eq!(truth.projectors[sample].rank(), 1);
-        // N π with the literal formula for one row.
+        // N π by the explicit formula for one row.
         let action = truth.actions.column(sample);
         let literal = action - a.transpose() * ((&a * action)[0] / a.norm_squared());
         prop_assert!((literal - u).amax() < 1e-6, "sample {sample}");
@@ -124,8 +124,8 @@ fn obeys(recording: &Recording, hand: &Chain, axes: usize, roll_out: RollOut) ->
     Ok(())
 }
 
-/// With one Euler step a sample, rule (9) finds the true potential along the movement, up to its factor 1/(1 − wδt): the
-/// step never leaves the constraint, though that turns with the state.
+/// With one Euler step per sample, rule (9) recovers the true potential along the movement, up to its factor 1/(1 −
+/// wδt): the step never leaves the constraint, although the constraint turns with the state.
 fn descends(recording: &Recording, weight: f64, roll_out: RollOut) -> Result<(), TestCaseError> {
     let (states, potential) = (&recording.truth.states, &recording.truth.potential);
     if roll_out.sub_steps == 1 {
@@ -138,7 +138,7 @@ fn descends(recording: &Recording, weight: f64, roll_out: RollOut) -> Result<(),
     Ok(())
 }
 
-/// Half of the movements are of each hand, and normals point everywhere.
+/// Each hand has half of the movements, and normals point in all directions.
 #[test]
 fn sides_and_normals_are_drawn_evenly() {
     let scenario = HandInPlane {
@@ -159,7 +159,7 @@ fn sides_and_normals_are_drawn_evenly() {
     assert!((spread - Matrix3::identity() / 3.0).amax() < 5.0 * (4.0_f64 / 45.0 / 400.0).sqrt(), "{spread}");
 }
 
-/// Several threads may ask one function at once.
+/// Several threads may call one function at the same time.
 #[test]
 fn a_hands_jacobian_is_that_of_the_robot() {
     let arm = arm();

@@ -1,4 +1,5 @@
-//! Movements under constraints: the literal loop, the constraint itself, and what the Euler step does to (9).
+//! Movements under constraints: comparison with an explicit loop, the constraint itself, and the effect of Euler steps
+//! on (9).
 
 use constraints::{ConstraintError, LinearConstraint, PfaffianConstraint, Switching, Unconstrained};
 use demo_gen::{Parabola, Recording, RollOut, Sinusoidal, demonstrations};
@@ -7,7 +8,7 @@ use nalgebra::{DMatrix, DVector, DVectorView, DVectorViewMut, dvector};
 use proptest::collection::vec;
 use proptest::prelude::*;
 
-/// One row that turns with time and place, and now and then lets go.
+/// One row that turns with time and state, and is sometimes inactive.
 #[derive(Debug)]
 struct Turning {
     dim: usize,
@@ -26,7 +27,7 @@ impl PfaffianConstraint for Turning {
     }
 }
 
-/// π(x) = M x: the policy of no potential, unless M is symmetric.
+/// π(x) = M x: a policy without a potential, unless M is symmetric.
 struct Linear(DMatrix<f64>);
 
 impl Policy for Linear {
@@ -39,7 +40,7 @@ impl Policy for Linear {
     }
 }
 
-/// x ← x + h (I − aᵀa / ‖a‖²) π(x), as one would write it down.
+/// x ← x + h (I − aᵀa / ‖a‖²) π(x), implemented directly.
 fn literal(roll_out: RollOut, policy: &dyn Policy, constraint: &Turning, start: &DVector<f64>) -> Vec<DVector<f64>> {
     let step = roll_out.time_step / roll_out.sub_steps as f64;
     let mut states = vec![start.clone()];
@@ -79,13 +80,13 @@ impl Case {
         recording.expect("a contraction does not diverge")
     }
 
-    /// The A that holds at a sample: they change every three samples.
+    /// The active A at a sample; it changes every three samples.
     fn matrix(&self, sample: usize) -> &DMatrix<f64> {
         &self.matrices[(sample / 3).min(self.matrices.len() - 1)]
     }
 }
 
-/// A parabola anywhere, of any weight and time step with w δt < 1, under constraints of any number of rows.
+/// A parabola with any centre, weight and time step with w δt < 1, under constraints with any number of rows.
 fn case() -> impl Strategy<Value = Case> {
     let sizes = (1..5usize).prop_flat_map(|n| (Just(n), vec(0..=n + 1, 1..4), 2..12usize));
     sizes.prop_flat_map(|(n, rows, n_samples)| {
@@ -134,7 +135,8 @@ proptest! {
         rate in -1.0..1.0f64, time_step in 0.05..1.0f64, n_samples in 2..20usize, sub_steps in 1..5usize,
     ) {
         let (dim, start) = (start.len(), DVector::from_vec(start));
-        // Towards the middle all in all: elsewhere rounding would grow until the constraint switches at another sample.
+        // The policy contracts towards the centre; otherwise rounding errors would grow until the constraint switches
+        // at another sample.
         let policy = Linear(DMatrix::from_vec(dim, dim, entries) - DMatrix::identity(dim, dim) * 0.5);
         let (roll_out, constraint) = (RollOut { time_step, n_samples, sub_steps }, Turning { dim, rate });
         let movement = roll_out.follow(&policy, &constraint, start.as_view()).unwrap();
@@ -148,7 +150,7 @@ proptest! {
         }
     }
 
-    /// A potential's movement and that of its policy are one, to the last bit.
+    /// The movement of a potential and that of its policy are identical to the last bit.
     #[test]
     fn the_policy_of_a_potential_moves_as_the_potential_does(case in case()) {
         let policy = NegativeGradient(&case.potential);
@@ -192,7 +194,8 @@ proptest! {
     fn the_displacement_rule_overestimates_by_one_factor(case in case()) {
         let recording = case.record();
         let phi = &recording.truth.potential;
-        // States and centre are of the size of 3: their rounding, in potentials and squared steps of that size.
+        // States and centre have magnitudes of about 3; this bounds their rounding errors in potentials and squared
+        // steps.
         let rounding = 1e-13 * case.potential.weight * 9.0;
         for sample in 1..case.roll_out.n_samples {
             let step = recording.observed.state(sample) - recording.observed.state(sample - 1);
@@ -227,12 +230,12 @@ proptest! {
         let start = DVector::from_vec(start);
         let roll_out = RollOut { time_step, n_samples: 5, sub_steps };
         let recording = roll_out.record(&potential, &Unconstrained { dim: 3 }, start.as_view()).unwrap();
-        // Unconstrained, each sub-step is one multiplication; many of them are nearly the exponential.
+        // Unconstrained, each sub-step is one multiplication; many of them approximate the exponential.
         let factor = (1.0 - 2.0 * weight * time_step / sub_steps as f64).powf(sub_steps as f64);
         let rate = 2.0 * weight * time_step;
         prop_assert!((factor - (-rate).exp()).abs() <= rate * rate / sub_steps as f64);
         for sample in 0..5 {
-            // 1600 steps at most, each rounded to 4e-16.
+            // At most 1600 steps, each rounded to 4e-16.
             prop_assert!((recording.observed.state(sample) - &start * factor.powf(sample as f64)).amax() < 1e-12);
         }
     }

@@ -1,4 +1,5 @@
-//! Constraints A u = b: movements keep to them, what is left is the policy's, and formulas are as they are printed.
+//! Constraints A u = b: movements obey them, the remaining velocity comes from the policy, and formulas match the
+//! publications.
 
 use constraints::{LinearConstraint, PfaffianConstraint};
 use demo_gen::tasks::{Contact, CyclesWithTask, LinearTask, TaskConstraint, Wiping};
@@ -38,7 +39,7 @@ fn tool(arm: &Wiping, recording: &Recording, sample: usize) -> (Vector3<f64>, Ve
 }
 
 proptest! {
-    /// A⁺b fulfils A u = b and has no part in the null space of A.
+    /// A⁺b satisfies A u = b and has no component in the null space of A.
     #[test]
     fn a_task_velocity_is_the_least_that_fulfils_it(rows in 1..4usize, entries in vec(-1.0..1.0f64, 15), b in vec(-1.0..1.0f64, 3)) {
         let matrix = DMatrix::from_row_slice(rows, 5, &entries[..5 * rows]);
@@ -53,7 +54,8 @@ proptest! {
         prop_assert!(across.project(velocity.as_view()).amax() < 1e-12);
     }
 
-    /// On the plane A and b are constant: u is Nπ and one push along the normal in all samples of a movement.
+    /// On the plane A and b are constant: u is Nπ plus one push along the normal, the same in all samples of a
+    /// movement.
     #[test]
     fn cycles_keep_their_task(seed in any::<u64>(), largest_task in 0.0..1.0f64, range in 0.1..1.5f64, k in 1..4usize) {
         let roll_out = RollOut { n_samples: 12, ..CyclesWithTask::default().roll_out };
@@ -71,7 +73,7 @@ proptest! {
                 prop_assert_eq!(recording.truth.actions.column(sample), action);
             }
         }
-        // The task changes neither starts nor normals, and a longer data set begins like a shorter one.
+        // The task affects neither starts nor normals, and a longer data set begins like a shorter one.
         let other = CyclesWithTask { largest_task: 0.0, n_trajectories: k + 1, ..system }.record(&mut generator(seed)).unwrap();
         for (one, other) in recordings.iter().zip(&other) {
             prop_assert_eq!(one.truth.states.column(0), other.truth.states.column(0));
@@ -80,7 +82,7 @@ proptest! {
         }
     }
 
-    /// The ratio of powers is as asked for, and nothing but velocities changes.
+    /// The power ratio is as requested, and only velocities change.
     #[test]
     fn noise_has_its_ratio(seed in any::<u64>(), decibels in 5.0..50.0f64) {
         let recordings = CyclesWithTask { n_trajectories: 30, ..CyclesWithTask::default() }.record(&mut generator(seed)).unwrap();
@@ -100,13 +102,13 @@ proptest! {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(8))]
 
-    /// A tool that keeps its height stays in one plane through its start, whose tilt is in bounds.
+    /// A tool with constrained height stays in one plane through its start, whose tilt is within bounds.
     #[test]
     fn wiping_keeps_its_height(seed in any::<u64>()) {
         let arm = arm(Contact::Height, 2, 20);
         for recording in arm.record(&mut generator(seed)).unwrap() {
             let (first, _, jacobian) = tool(&arm, &recording, 0);
-            // The forbidden direction is J_vᵀn, which gives n.
+            // The forbidden direction is J_vᵀn, which determines n.
             let transposed = jacobian.fixed_rows::<3>(0).transpose().svd(true, true);
             let normal = transposed.solve(&forbidden_row(&recording), 1e-12).unwrap();
             let normal = Vector3::new(normal[0], normal[1], normal[2]).normalize();
@@ -114,13 +116,13 @@ proptest! {
             for sample in 0..20 {
                 prop_assert!(pushed(&recording, sample).amax() < 1e-15);
                 let (position, _, _) = tool(&arm, &recording, sample);
-                // Euler steps leave the plane by their square.
+                // Euler steps deviate from the plane by their square.
                 prop_assert!(normal.dot(&(position - first)).abs() < 0.01);
             }
         }
     }
 
-    /// Flat contact brings the tool to its surface: distances shrink as e^(−κt).
+    /// Flat contact brings the tool to its surface: distances decay as e^(−κt).
     #[test]
     fn flat_contact_is_restored(seed in any::<u64>(), rate in 1.0..3.0f64) {
         let mut arm = arm(Contact::Flat, 2, 30);
@@ -137,7 +139,7 @@ proptest! {
         }
     }
 
-    /// The policy moves the tool as its formula says, wherever the arm is not singular.
+    /// The policy moves the tool according to its formula, wherever the arm is not singular.
     #[test]
     fn the_wiping_policy_moves_the_tool(seed in any::<u64>()) {
         let arm = arm(Contact::Height, 1, 3);
@@ -153,7 +155,7 @@ proptest! {
     }
 }
 
-/// The one forbidden direction, (n).
+/// The only forbidden direction, (n).
 fn forbidden_row(recording: &Recording) -> DVector<f64> {
     let forbidden = DMatrix::identity(7, 7) - recording.truth.projectors[0].matrix();
     forbidden.svd(true, false).u.unwrap().column(0).into_owned()

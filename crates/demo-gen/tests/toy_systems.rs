@@ -1,4 +1,4 @@
-//! The toy system of Section 4.1: what is drawn, in which order, and that it stays the same.
+//! The toy system of Section 4.1: its random draws, their order, and reproducibility.
 
 use constraints::NullSpaceProjector;
 use demo_gen::{Recording, Redraw, ToyPotential, ToySystem};
@@ -28,7 +28,7 @@ fn toy() -> impl Strategy<Value = ToySystem> {
     })
 }
 
-/// The samples at which the projector differs from the one before.
+/// The samples at which the projector differs from the previous one.
 fn changes(recording: &Recording) -> Vec<usize> {
     let projectors = &recording.truth.projectors;
     (1..projectors.len()).filter(|&sample| projectors[sample] != projectors[sample - 1]).collect()
@@ -97,7 +97,7 @@ fn starts_and_constraints_are_spread_as_the_paper_says() {
     let recordings = record(&ToySystem { n_trajectories: 4000, n_samples: 2, ..ToySystem::default() }, 1);
     let share =
         |count: fn(&Recording) -> bool| recordings.iter().filter(|recording| count(recording)).count() as f64 / 4000.0;
-    // Shares of 4000 have a standard deviation of .008 at most; four of them are allowed.
+    // Shares of 4000 have a standard deviation of at most .008; four of them are allowed.
     let quarter = share(|recording| recording.observed.state(0)[0] > 1.0);
     let half = share(|recording| recording.observed.state(0)[1] < 0.0);
     // N of a row at angle ϑ has sin²ϑ in its corner: below 1/4 for a third of all angles.
@@ -107,7 +107,7 @@ fn starts_and_constraints_are_spread_as_the_paper_says() {
     }
 }
 
-/// Recipe: seed 2009 in `ChaCha8Rng::seed_from_u64`, the last trajectory of the default system and trajectory 1 of the
+/// Seed 2009 in `ChaCha8Rng::seed_from_u64`, the last trajectory of the default system and trajectory 1 of the
 /// sinusoidal one, as this crate first computed them. A change means that the data sets of all experiments have changed.
 #[test]
 fn the_data_of_a_seed_stay_the_same() {
@@ -128,7 +128,7 @@ fn the_data_of_a_seed_stay_the_same() {
     ];
     for (recording, sample, expected) in golden {
         let found = recording.observed.state(sample).into_owned();
-        // Sine and cosine may differ by a rounding from one machine to another.
+        // Sine and cosine may differ between machines by a rounding error.
         assert!((&found - &expected).amax() < 1e-13, "sample {sample}: {found}, expected {expected}");
     }
 }

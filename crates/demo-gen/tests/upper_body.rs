@@ -1,4 +1,4 @@
-//! Start states of the upper body: where they are, how they spread, and what is refused.
+//! Start states of the upper body: their location and spread, and refused input.
 
 use crate::robots::{UPPER_BODY, UPPER_BODY_SRDF, upper_body};
 use demo_gen::{DemoGenError, Side, UpperBody};
@@ -31,7 +31,7 @@ proptest! {
     }
 }
 
-/// Coordinates far from their limits keep the mean and variance asked for.
+/// Coordinates far from their limits have the requested mean and variance.
 #[test]
 fn starts_spread_around_the_posture_as_asked() {
     let body = upper_body();
@@ -83,7 +83,7 @@ fn unsuitable_bodies_and_starts_are_refused() {
     for variance in [-0.1, f64::INFINITY] {
         assert_eq!(body.start(variance, &mut rng).unwrap_err(), DemoGenError::StartVariance { variance });
     }
-    // Without the SRDF the torso always sinks into the legs.
+    // Without the SRDF the torso always penetrates the legs.
     let stuck = UpperBody::new(UPPER_BODY, "<robot/>").unwrap();
     assert_eq!(stuck.start(1e-4, &mut rng).unwrap_err(), DemoGenError::NoFreeStart { draws: 10_000 });
     assert!(matches!(body.palms(DVector::zeros(3).as_view()), Err(DemoGenError::Robot(_))));

@@ -1,4 +1,4 @@
-//! Reads recordings from CSV, writes them in another format, and prints what a reader says about a faulty file.
+//! Reads recordings from CSV, writes them in another format, and prints a reader's error for a faulty file.
 
 #![allow(clippy::print_stdout, reason = "a program")]
 

@@ -1,4 +1,4 @@
-//! From what a reader found to valid samples: finite, in order of time, none twice.
+//! Turns a reader's result into valid samples: finite, ordered by time, without duplicates.
 
 mod finite;
 
@@ -9,13 +9,13 @@ use crate::rows::roles;
 use crate::{Fault, Nan, ReadError, ReadOptions};
 use motion::{Channel, Finding, is_called_context};
 
-/// What LeRobot calls the places of objects.
+/// LeRobot's name for the positions of objects.
 pub(crate) const ENVIRONMENT: &str = "observation.environment_state";
 
-/// A clock that goes back to this share of what has passed begins again.
+/// A clock that goes back to this share of the elapsed time or less has restarted.
 const BEGINNING: f64 = 0.1;
 
-/// Checks and repairs every episode, as the options say. Some `channels` are those of other recordings of the set.
+/// Checks and repairs every episode according to the options. `channels` are those of other recordings of the set.
 pub(crate) fn clean(drafts: &mut RawRecordings, channels: &[String], options: &ReadOptions) -> Result<(), ReadError> {
     positive(options.split_gap, "--split-gap")?;
     if drafts.drop_constant {
@@ -53,8 +53,8 @@ pub(crate) fn clean(drafts: &mut RawRecordings, channels: &[String], options: &R
     Ok(())
 }
 
-/// Columns that never change and were not named are no state: a counter that does not run, a sensor that is off. `known` are channels
-/// elsewhere.
+/// Drops unnamed columns that never change, such as a stopped counter or a sensor that is off; they are no state. `known` are the
+/// channels of other recordings.
 fn leave_out_constant(drafts: &mut RawRecordings, known: &[String]) {
     let n = drafts.channels.len();
     let mut first: Vec<f64> = vec![f64::NAN; n];
@@ -80,7 +80,7 @@ fn leave_out_constant(drafts: &mut RawRecordings, known: &[String]) {
     retain_channels(drafts, &changes);
 }
 
-/// Leaves out the channels that do not stay, with their numbers.
+/// Drops the channels that do not stay, with their numbers.
 fn retain_channels(drafts: &mut RawRecordings, stays: &[bool]) {
     let mut column = stays.iter();
     drafts.channels.retain(|_| *column.next().unwrap_or(&true));
@@ -90,7 +90,7 @@ fn retain_channels(drafts: &mut RawRecordings, stays: &[bool]) {
     }
 }
 
-/// What became of samples that were not finite.
+/// A finding on samples that were not finite.
 fn not_recorded(missing: usize, samples: usize, nan: Nan) -> Option<Finding> {
     let what = match nan {
         Nan::Drop => "were left out",
@@ -100,8 +100,8 @@ fn not_recorded(missing: usize, samples: usize, nan: Nan) -> Option<Finding> {
     (missing > 0).then(|| remark(what, "check the recorder: what is missing is often missing where it matters"))
 }
 
-/// The environment of LeRobot is context if it stays as it is in every episode and differs between them; else it is not used. Where
-/// `channels` have been read before, they tell.
+/// LeRobot's environment is context if it is constant within every episode and differs between episodes; otherwise it is not used. If
+/// `channels` have been read before, they decide.
 fn leave_out_moving_environment(drafts: &mut RawRecordings, channels: &[String]) {
     let n = drafts.channels.len();
     let is_environment = |channel: &Channel| channel.name.starts_with(ENVIRONMENT);
@@ -134,7 +134,7 @@ fn leave_out_moving_environment(drafts: &mut RawRecordings, channels: &[String])
     retain_channels(drafts, &stays);
 }
 
-/// What is called a context and has no velocity of its own has to stay as it is.
+/// Refuses a channel that is named like a context and changes within an episode, if velocities are recorded and its are all 0.
 fn refuse_moving_context(drafts: &RawRecordings) -> Result<(), ReadError> {
     let n = drafts.channels.len();
     let of = |numbers: &[f64], channel: usize| numbers.iter().skip(channel).step_by(n).copied().collect::<Vec<_>>();
@@ -154,7 +154,7 @@ fn refuse_moving_context(drafts: &RawRecordings) -> Result<(), ReadError> {
     Ok(())
 }
 
-/// `--units m`, `--units x=mm`.
+/// Applies `--units m`, `--units x=mm`.
 fn name_units(drafts: &mut RawRecordings, options: &ReadOptions) -> Result<(), ReadError> {
     let names = drafts.names();
     for assignment in options.units.iter().flat_map(|text| text.split(',')) {
@@ -166,7 +166,7 @@ fn name_units(drafts: &mut RawRecordings, options: &ReadOptions) -> Result<(), R
     Ok(())
 }
 
-/// The channels that a flag's patterns name.
+/// The channels that match a flag's patterns.
 fn named(patterns: &[String], names: &[String], flag: &str) -> Result<Vec<usize>, ReadError> {
     roles::named(patterns, names, &format!("{flag}, among the channels of the state"))
 }
@@ -186,7 +186,7 @@ fn degrees_to_radians(drafts: &mut RawRecordings, options: &ReadOptions) -> Resu
     Ok(())
 }
 
-/// Into the order of stamps; equal ones stay in theirs.
+/// Sorts samples by stamp, stably.
 fn sort(draft: &mut RawEpisode) {
     let mut order: Vec<usize> = (0..draft.len()).collect();
     order.sort_by(|&a, &b| draft.times[a].total_cmp(&draft.times[b]));
@@ -204,13 +204,13 @@ fn refuse_backwards(draft: &RawEpisode, word: &str) -> Result<(), ReadError> {
     Err(ReadError::TimeBackwards(Fault::new(what, draft.place(at + 1, word), remedy)))
 }
 
-/// Seconds from the first sample. Stamps that this rounds to the same are one.
+/// Shifts times to seconds from the first sample. Stamps that this rounds to the same value become equal.
 fn from_zero(draft: &mut RawEpisode) {
     let first = draft.times.first().copied().unwrap_or(0.0);
     draft.times.iter_mut().for_each(|time| *time -= first);
 }
 
-/// Retains the first of samples with equal stamps.
+/// Keeps the first of samples with equal stamps.
 fn leave_out_duplicates(draft: &mut RawEpisode, word: &str) -> Option<Finding> {
     let duplicate = |sample: &usize| *sample > 0 && draft.times[*sample] == draft.times[sample - 1];
     let first = (0..draft.len()).find(duplicate)?;
@@ -224,7 +224,7 @@ fn leave_out_duplicates(draft: &mut RawEpisode, word: &str) -> Option<Finding> {
     Some(remark(what, "check the recorder's clock"))
 }
 
-/// Cuts where stamps go back, or are more than `longest` seconds apart.
+/// Cuts an episode where stamps go back, or are more than `longest` seconds apart.
 fn split(draft: RawEpisode, longest: f64) -> Vec<RawEpisode> {
     let mut cuts: Vec<usize> = vec![0];
     let passed = |sample: usize| draft.times[sample] - draft.times[sample - 1];
@@ -240,7 +240,7 @@ fn split(draft: RawEpisode, longest: f64) -> Vec<RawEpisode> {
     cuts.windows(2).enumerate().map(part).collect()
 }
 
-/// Steps of more than half a turn become short ones.
+/// Replaces steps of more than half a turn by short ones.
 fn unwrap_angles(drafts: &mut RawRecordings, options: &ReadOptions) -> Result<(), ReadError> {
     let names = drafts.names();
     if options.unwrap.iter().any(|pattern| pattern != "*") {
@@ -262,7 +262,7 @@ fn unwrap_angles(drafts: &mut RawRecordings, options: &ReadOptions) -> Result<()
     Ok(())
 }
 
-/// Three or four digits, without a tail of zeros.
+/// Rounds to three or four digits, without trailing zeros.
 pub(crate) fn rounded(value: f64) -> String {
     let digits = format!("{value:.3e}");
     digits.parse::<f64>().map_or(digits, |value| format!("{value}"))
@@ -318,7 +318,7 @@ mod tests {
             assert_eq!(other.episodes[0].positions, [1.0, 2.0]);
             assert_eq!(other.episodes[1].velocities, [10.0, 10.0]);
         }
-        // In one of several pieces the others tell.
+        // In one of several pieces, the channels read before decide.
         let mut same = drafts([[3.0, 3.0], [3.0, 3.0]]);
         let names = same.names();
         leave_out_moving_environment(&mut same, &names);

@@ -2,12 +2,12 @@ use std::fmt;
 
 use thiserror::Error;
 
-/// What is wrong, where, and what helps: the three lines of every error.
+/// Problem, place and remedy: the three lines of every error.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Fault {
-    /// What is wrong, one line.
+    /// The problem, in one line.
     pub what: String,
-    /// File, line, column, episode, where they are known.
+    /// File, line, column and episode, where known.
     pub place: String,
     /// A flag, a command or a choice that helps.
     pub remedy: String,
@@ -19,10 +19,10 @@ impl fmt::Display for Fault {
     }
 }
 
-/// Declares the variants once: each holds a [`Fault`], and its name is its code.
+/// Declares the variants once. Each holds a [`Fault`]; its name is its code.
 macro_rules! read_error {
     ($($(#[doc = $doc:literal])+ $name:ident,)+) => {
-        /// Why nothing was read. The variants are for programs, the [`Fault`] inside is for people.
+        /// The reason why nothing was read. Programs use the variants, people read the [`Fault`] inside.
         ///
         /// ```text
         /// 'x' is not a finite number
@@ -36,12 +36,12 @@ macro_rules! read_error {
         }
 
         impl ReadError {
-            /// The variant's name, for machines and for searching.
+            /// The variant's name, for programs and for searching.
             pub fn code(&self) -> &'static str {
                 match self { $(ReadError::$name(_) => stringify!($name),)+ }
             }
 
-            /// What, where, what next.
+            /// Problem, place and remedy.
             pub fn fault(&self) -> &Fault {
                 match self { $(ReadError::$name(fault) => fault,)+ }
             }
@@ -50,75 +50,75 @@ macro_rules! read_error {
 }
 
 read_error! {
-    /// There is a file, but no sample in it.
+    /// The file contains no sample.
     Empty,
-    /// The content is not what the extension or `--as` promised.
+    /// The content does not match the extension or `--as`.
     NotThisFormat,
-    /// The file ends before what it announces.
+    /// The file ends before its announced end.
     Truncated,
-    /// Check sums, lengths or structure contradict each other.
+    /// Checksums, lengths or structure contradict each other.
     Corrupt,
-    /// Text, but not UTF-8.
+    /// Text that is not UTF-8.
     Encoding,
     /// Rows of different lengths.
     Ragged,
-    /// A field that should be a number is not.
+    /// A field that should be a number is none.
     NotANumber,
-    /// NaN, infinity, or nothing.
+    /// NaN, infinity, or a missing number.
     NotFinite,
-    /// A column or array that was asked for does not exist.
+    /// A requested column or array does not exist.
     NoColumn,
     /// Two columns have the same name.
     AmbiguousColumn,
-    /// Which columns are the state cannot be known.
+    /// The columns of the state cannot be determined.
     NoRoles,
-    /// Neither stamps nor a time step.
+    /// There are neither stamps nor a time step.
     NoTime,
     /// Stamps descend.
     TimeBackwards,
-    /// More channels than samples: rows and columns seem to be exchanged.
+    /// More channels than samples: rows and columns seem to be swapped.
     LooksTransposed,
     /// Arrays that belong together differ in length.
     Lengths,
-    /// Numbers of a kind that is not a coordinate: complex, text, records.
+    /// Numbers of a type that cannot be coordinates: complex, text, records.
     Type,
     /// Python objects; reading them would run code.
     Pickled,
-    /// A known format that is not read, or a feature of one.
+    /// A known format, or a feature of one, that is not supported.
     Unsupported,
-    /// A file that does not exist, or that others refer to.
+    /// A file that does not exist, though it was named or other files refer to it.
     MissingFile,
     /// No topic of a known message type, or several.
     NoTopic,
-    /// JSON that is malformed or has another form.
+    /// Malformed JSON, or JSON of another form.
     Json,
-    /// More than the limits allow.
+    /// The limits are exceeded.
     TooLarge,
-    /// The system does not let us read.
+    /// The operating system does not allow reading.
     Unreadable,
-    /// A flag's value that makes no sense.
+    /// An invalid value of a flag.
     Option,
 }
 
 impl ReadError {
-    /// A file whose content is damaged or contradicts itself.
+    /// Error: the content of a file is damaged or contradicts itself.
     pub(crate) fn corrupt(what: impl Into<String>, place: impl Into<String>) -> Self {
         ReadError::Corrupt(Fault::new(what, place, "another copy of the file"))
     }
 
-    /// A file that ends too early.
+    /// Error: a file ends too early.
     pub(crate) fn truncated(what: impl Into<String>, place: impl Into<String>) -> Self {
         ReadError::Truncated(Fault::new(what, place, "another copy of the file: this one is not whole"))
     }
 
-    /// A file that would take much more memory than it has bytes.
+    /// Error: a file would take much more memory than it has bytes.
     pub(crate) fn grows(what: impl Into<String>, place: impl Into<String>) -> Self {
         ReadError::TooLarge(Fault::new(what, place, "--trust if you trust its source"))
     }
 }
 
 impl Fault {
-    /// Each text becomes one line: names of files and columns may hold line ends.
+    /// Joins each text into one line, because names of files and columns may contain line breaks.
     pub(crate) fn new(what: impl Into<String>, place: impl Into<String>, remedy: impl Into<String>) -> Self {
         Self { what: in_one_line(what.into()), place: in_one_line(place.into()), remedy: in_one_line(remedy.into()) }
     }

@@ -1,4 +1,4 @@
-//! Readers of other libraries on damaged files.
+//! Protects against panics of other libraries on damaged files.
 
 use std::cell::Cell;
 
@@ -6,12 +6,13 @@ thread_local! {
     static CATCHING: Cell<bool> = const { Cell::new(false) };
 }
 
-/// Whether a panic of this thread will be caught and become a [`ReadError`](crate::ReadError): a panic hook need not report it.
+/// Whether a panic of this thread will be caught and become a [`ReadError`](crate::ReadError), so that a panic hook need not
+/// report it.
 pub fn catches_panics() -> bool {
     CATCHING.get()
 }
 
-/// What `read` says. Libraries for containers panic at some damaged files; that makes the file corrupt.
+/// The result of `read`. Libraries for containers panic on some damaged files; a panic becomes the error of a corrupt file.
 #[cfg(any(feature = "parquet", feature = "hdf5", feature = "mcap", feature = "mat"))]
 pub(crate) fn guarded<T>(
     file: &str,

@@ -1,4 +1,4 @@
-//! A file before its format is known.
+//! A file whose format is not yet known.
 
 use std::cell::Cell;
 use std::fs::File;
@@ -7,25 +7,25 @@ use std::path::{Path, PathBuf};
 
 use crate::{Fault, ReadError, ReadOptions, SamplesAre, regular_file};
 
-/// A file to be read, with its first bytes.
+/// A file to read, with its first bytes.
 pub(crate) struct Input<'a> {
     pub(crate) path: PathBuf,
-    /// Without folders, for messages.
+    /// File name without folders, for messages.
     pub(crate) name: String,
-    /// Without folders and extension: the name of a movement that has none.
+    /// File name without folders and extension: the name of a movement that has none.
     pub(crate) stem: String,
-    /// Bytes in all.
+    /// Size in bytes.
     pub(crate) len: u64,
-    /// The first of them.
+    /// The first bytes.
     pub(crate) head: Vec<u8>,
     pub(crate) options: &'a ReadOptions,
-    /// Whether arrays are handed on with their indices in reverse order, since the format stores columns first.
+    /// Whether arrays are passed on with their indices in reverse order, because the format stores columns first.
     pub(crate) columns_first: bool,
-    /// Bytes of memory that may still be taken.
+    /// Bytes of memory that reading may still take.
     budget: Cell<u64>,
 }
 
-/// A file may always grow to so much in memory.
+/// Any file may grow to this size in memory.
 const MEMORY: u64 = 48 << 20;
 
 /// Enough for the header of thousands of columns.
@@ -51,7 +51,7 @@ impl<'a> Input<'a> {
         })
     }
 
-    /// How samples lie in arrays as they are handed on.
+    /// The layout of samples in arrays as they are passed on.
     pub(crate) fn samples_are(&self) -> Option<SamplesAre> {
         match (self.options.samples_are, self.columns_first) {
             (Some(SamplesAre::Rows), true) => Some(SamplesAre::Columns),
@@ -60,7 +60,8 @@ impl<'a> Input<'a> {
         }
     }
 
-    /// Asks for memory, before it is taken: all that a file unpacks to is at most 64 times its size, unless it is trusted.
+    /// Requests memory before it is allocated. Unless the file is trusted, all that it unpacks to is at most 64 times its
+    /// size.
     pub(crate) fn charge(&self, bytes: u64) -> Result<(), ReadError> {
         match self.budget.get().checked_sub(bytes) {
             Some(left) => self.budget.set(left),
@@ -81,7 +82,7 @@ impl<'a> Input<'a> {
         end.is_ok_and(|end| end == mark)
     }
 
-    /// So many bytes from here on of the open file; fewer where it ends.
+    /// Reads `length` bytes of the open file from `start`; fewer at its end.
     #[cfg(feature = "parquet")]
     pub(crate) fn part(&self, file: &mut File, start: u64, length: u64) -> Result<Vec<u8>, ReadError> {
         use std::io::{Seek as _, SeekFrom};
@@ -91,7 +92,7 @@ impl<'a> Input<'a> {
         Ok(bytes)
     }
 
-    /// All bytes of the file.
+    /// Reads all bytes of the file.
     #[cfg(feature = "mat")]
     pub(crate) fn whole(&self, progress: &mut dyn FnMut(u64)) -> Result<Vec<u8>, ReadError> {
         let mut bytes = Vec::new();
@@ -120,7 +121,7 @@ pub(crate) fn unreadable(error: &std::io::Error, name: &str) -> ReadError {
     }
 }
 
-/// What went wrong while bytes were decompressed or checked.
+/// The error for bytes that failed to decompress or to match their checksum.
 pub(crate) fn damaged(error: &std::io::Error, file: &str) -> ReadError {
     ReadError::corrupt(format!("the data are damaged: {error}"), file)
 }

@@ -1,4 +1,4 @@
-//! Episodes of several files as one set.
+//! Joins the episodes of several files to one set.
 
 use std::path::Path;
 
@@ -6,7 +6,7 @@ use crate::input::name_of;
 use crate::raw::RawRecordings;
 use crate::{Fault, ReadError};
 
-/// What `read` finds in each of some files or pieces of files, in their order; none without a file.
+/// Joins the results of `read` for files or pieces of files, in their order; `None` without a file.
 pub(crate) fn joined<P: AsRef<Path>>(
     files: &[P],
     mut read: impl FnMut(&P) -> Result<RawRecordings, ReadError>,
@@ -24,7 +24,7 @@ pub(crate) fn joined<P: AsRef<Path>>(
     Ok(joined)
 }
 
-/// Appends the episodes of another file, or of more of the last one.
+/// Appends the episodes of another file, or of another piece of the last one.
 fn join(joined: &mut RawRecordings, more: RawRecordings, file: &str, is_last: bool) -> Result<(), ReadError> {
     if joined.channels != more.channels {
         let what = format!("channels differ: {} here, {} before", more.names().join(", "), joined.names().join(", "));
@@ -38,10 +38,10 @@ fn join(joined: &mut RawRecordings, more: RawRecordings, file: &str, is_last: bo
         return Err(ReadError::Lengths(Fault::new(what, file, remedy)));
     }
     joined.episodes.extend(more.episodes);
-    // What one file has is not unknown.
+    // A pattern is unknown only if no file matches it.
     joined.unknown.patterns.retain(|pattern| more.unknown.patterns.contains(pattern));
     for finding in more.findings {
-        // Every file says the same of its columns.
+        // Every file yields the same findings about its columns.
         if !joined.findings.contains(&finding) {
             joined.findings.push(finding);
         }

@@ -12,7 +12,7 @@ pub(crate) enum LabelEntry {
 }
 
 impl LabelEntry {
-    /// Of an episode of so many samples.
+    /// The entry of an episode of `samples` samples.
     pub(crate) fn of(labels: &Labels, samples: usize) -> Self {
         match labels.only() {
             Some(name) => LabelEntry::One(name.to_owned()),
@@ -20,7 +20,7 @@ impl LabelEntry {
         }
     }
 
-    /// None without a name, or with names for another number of samples.
+    /// `None` without a name, or if the number of names differs from the number of samples.
     #[cfg(feature = "mcap")]
     pub(crate) fn labels(self, samples: usize) -> Option<Labels> {
         match self {

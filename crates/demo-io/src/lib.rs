@@ -1,8 +1,8 @@
 //! Reads recordings of movements from files, with names, units and stamps, and writes them.
 //!
-//! [`read`] detects the format, which columns are time, movement, state and velocity, and the unit of stamps. [`ReadOptions`]
-//! overrides what it detects. A file that cannot be read is an error of three lines ([`ReadError`]). What does not prevent
-//! reading is a [`motion::Finding`], and nothing is left out without one. What was recorded is judged by `prepare`, not here.
+//! [`read`] detects the format, the columns of time, movement, state and velocity, and the unit of stamps. [`ReadOptions`]
+//! overrides what it detects. A file that cannot be read gives an error of three lines ([`ReadError`]). Lesser problems are
+//! [`motion::Finding`]s, and nothing is left out without one. The recorded movements are judged by `prepare`, not here.
 //!
 //! ```
 //! use demo_io::{ReadOptions, read, write};
@@ -35,8 +35,8 @@
 //! | MCAP | `mcap` | JointState, PoseStamped, TwistStamped, Float64MultiArray, JSON |
 //! | MAT 5 to 7 | `mat` | cells and arrays of structures, matrices; samples are columns |
 //!
-//! A file need not be trusted: nothing is allocated because a header says so, and a file takes at most 64 times its size and
-//! 64 MB of memory unless [`ReadOptions::trust`] is set.
+//! Files need not be trusted: announced sizes in headers never cause an allocation, and a file takes at most 64 times its
+//! size and 64 MB of memory unless [`ReadOptions::trust`] is set.
 
 mod arrays;
 mod clean;

@@ -1,4 +1,4 @@
-//! Episodes as a reader finds them, before anything is checked.
+//! Unchecked episodes, as readers return them.
 
 use crate::names::selection::{flags, unmatched};
 use crate::rows::stamps::{Stamp, TicksPerSecond};
@@ -8,23 +8,23 @@ use nalgebra::DMatrix;
 use crate::error::in_one_line;
 use crate::{Fault, ReadError, ReadOptions, TimeUnit};
 
-/// Everything a reader found.
+/// The result of a reader.
 #[derive(Debug)]
 pub(crate) struct RawRecordings {
     pub(crate) channels: Vec<Channel>,
     pub(crate) episodes: Vec<RawEpisode>,
     pub(crate) findings: Vec<Finding>,
-    /// What [`Rows`] count: "line", "row", "message", "sample".
+    /// The unit that [`Rows`] counts: "line", "row", "message", "sample".
     pub(crate) word: &'static str,
-    /// Whether the state was named, or found among columns, of which those that never change are left out.
+    /// Whether the state was detected rather than named, so that columns that never change are dropped.
     pub(crate) drop_constant: bool,
-    /// What `--ignore` names and is not there.
+    /// Patterns of `--ignore` that match nothing.
     pub(crate) unknown: Unknown,
-    /// Names of the channels that the user takes as context.
+    /// Names of the channels that the user selects as context.
     pub(crate) context: Vec<String>,
 }
 
-/// Patterns that name nothing, and the names that there are.
+/// Patterns that match nothing, and the existing names.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Unknown {
     pub(crate) patterns: Vec<String>,
@@ -44,29 +44,29 @@ impl Unknown {
 #[derive(Debug)]
 pub(crate) struct RawEpisode {
     pub(crate) name: String,
-    /// The file, without folders.
+    /// File name without folders.
     pub(crate) file: String,
     pub(crate) rows: Rows,
-    /// (N), in seconds, from anywhere.
+    /// (N), in seconds, with any origin.
     pub(crate) times: Vec<f64>,
-    /// Sample after sample, n N numbers; what is missing is NaN.
+    /// Sample after sample, n N numbers; a missing one is NaN.
     pub(crate) positions: Vec<f64>,
-    /// As many, or none.
+    /// As many as positions, or empty.
     pub(crate) velocities: Vec<f64>,
     pub(crate) constraint: Option<Labels>,
 }
 
-/// At most this many episodes and channels.
+/// Maximum number of episodes, and of channels.
 pub(crate) const MOST_EPISODES: usize = 1_000_000;
 pub(crate) const MOST_CHANNELS: usize = 4096;
 
 impl RawRecordings {
-    /// Of the channels, n.
+    /// Names of the n channels.
     pub(crate) fn names(&self) -> Vec<String> {
         self.channels.iter().map(|channel| channel.name.clone()).collect()
     }
 
-    /// As other crates take them.
+    /// Converts to the type that other crates use.
     pub(crate) fn checked(self) -> Recordings {
         let RawRecordings { channels, episodes, findings, word, .. } = self;
         let n = channels.len();
@@ -89,7 +89,7 @@ impl RawEpisode {
         self.times.len()
     }
 
-    /// Some samples, in the order given.
+    /// The selected samples, in the given order.
     pub(crate) fn chosen(&self, samples: impl Iterator<Item = usize> + Clone) -> RawEpisode {
         // Velocities may be missing.
         let columns = |numbers: &[f64]| -> Vec<f64> {
@@ -104,7 +104,7 @@ impl RawEpisode {
         RawEpisode { name, file, rows, times, positions, velocities, constraint }
     }
 
-    /// Where `sample` is in the file: "demos.csv, line 17 (episode 1)".
+    /// The place of `sample` in the file: "demos.csv, line 17 (episode 1)".
     pub(crate) fn place(&self, sample: usize, word: &str) -> String {
         let Self { name, file, rows, .. } = self;
         match word {
@@ -114,10 +114,10 @@ impl RawEpisode {
     }
 }
 
-/// Where each sample is in the file, as runs of consecutive places: a few bytes for most episodes.
+/// The place of each sample in the file, as runs of consecutive places: a few bytes for most episodes.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub(crate) struct Rows {
-    /// First sample and its place, of each run.
+    /// The first sample of each run and its place.
     runs: Vec<(usize, u64)>,
     len: usize,
 }
@@ -158,12 +158,12 @@ impl FromIterator<u64> for Rows {
     }
 }
 
-/// How an episode's times come about.
+/// The source of an episode's times.
 #[derive(Debug)]
 pub(crate) enum Clock {
-    /// Every so many seconds.
+    /// Samples at this interval, in seconds.
     Even(f64),
-    /// From stamps: units since the first.
+    /// Stamps, in units since the first.
     Stamps { first: Option<Stamp>, since: Vec<f64> },
 }
 
@@ -181,7 +181,7 @@ impl Clock {
         }
     }
 
-    /// Seconds of `len` samples.
+    /// The times of `len` samples, in seconds.
     pub(crate) fn seconds(self, len: usize, ticks: TicksPerSecond) -> Vec<f64> {
         match self {
             Clock::Even(period) => even_times(period, len),
@@ -197,18 +197,18 @@ impl Clock {
     }
 }
 
-/// `x0`, `x1` and so on, where a file has no names of n channels.
+/// `x0`, `x1` and so on, for a file that does not name its n channels.
 pub(crate) fn counted_names(n: usize) -> Vec<String> {
     (0..n).map(|channel| format!("x{channel}")).collect()
 }
 
-/// Seconds of `len` samples, `step` apart.
+/// Times of `len` samples, `step` seconds apart.
 pub(crate) fn even_times(step: f64, len: usize) -> Vec<f64> {
     (0..len).map(|sample| sample as f64 * step).collect()
 }
 
-/// Seconds of stamps since the first of them. Their unit is `ticks` if it is known, else what the first one has with it, else
-/// what the user says, else what `name` and its size suggest.
+/// Converts stamps to seconds since the first. Their unit is `ticks` if it is known, else the unit in the first stamp, else
+/// the user's, else a guess from `name` and the size of the stamp.
 pub(crate) fn seconds_since_first(
     stamps: impl Iterator<Item = (Stamp, Option<TicksPerSecond>)>,
     name: &str,
@@ -225,7 +225,7 @@ pub(crate) fn seconds_since_first(
     clock.seconds(0, ticks.unwrap_or(TicksPerSecond(1.0)))
 }
 
-/// Seconds that a flag names, if they are more than 0.
+/// Checks that the seconds of a flag are above 0.
 pub(crate) fn positive(seconds: Option<f64>, flag: &str) -> Result<Option<f64>, ReadError> {
     match seconds {
         Some(value) if !(value.is_finite() && value > 0.0) => {
@@ -247,12 +247,12 @@ pub(crate) fn no_time(place: impl Into<String>, what_is_time: &str) -> ReadError
     ReadError::NoTime(Fault::new(what, place, remedy))
 }
 
-/// Something that did not prevent reading.
+/// A finding that did not prevent reading.
 pub(crate) fn remark(what: impl Into<String>, next: impl Into<String>) -> Finding {
     Finding { verdict: Verdict::Good, what: in_one_line(what.into()), next: in_one_line(next.into()) }
 }
 
-/// A remark on what was not used, but `elsewhere`; none if that is nothing.
+/// A finding on unused names except those in `elsewhere`; `None` if there are none.
 pub(crate) fn unused(what: &str, names: &[&str], elsewhere: &[String]) -> Option<Finding> {
     let used = flags(elsewhere, names);
     let names: Vec<&str> = names.iter().zip(used).filter(|(_, used)| !used).map(|(name, _)| *name).collect();

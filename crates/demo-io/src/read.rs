@@ -16,19 +16,19 @@ use crate::sniff::{self, Folder};
 use crate::{Fault, Format, ReadError, ReadOptions};
 use motion::Recordings;
 
-/// Reads a file, or a folder of files with a movement each, of any format.
+/// Reads a file of any format, or a folder of files with one movement each.
 ///
-/// Calls `progress` now and then with the number of bytes read since the last call.
+/// Calls `progress` from time to time with the number of bytes read since the last call.
 ///
 /// # Errors
 ///
-/// [`ReadError`] says what is wrong, where, and which option helps.
+/// [`ReadError`] states the problem, its place, and the option that helps.
 pub fn read(path: &Path, options: &ReadOptions, progress: &mut dyn FnMut(u64)) -> Result<Recordings, ReadError> {
     read_all(&[path.to_owned()], options, progress)
 }
 
-/// Reads several files as one set: their channels must be equal, their episodes follow each other
-/// and are called after their files: `monday/3`.
+/// Reads several files as one set. Their channels must be equal. Their episodes follow each other and are named after their files:
+/// `monday/3`.
 ///
 /// # Errors
 ///
@@ -41,7 +41,7 @@ pub fn read_all(
     Ok(read_with_context(paths, options, progress)?.0)
 }
 
-/// As [`read_all`], with the names of the channels that [`ReadOptions::context`] names, which may also be numbers of columns.
+/// As [`read_all`]; also returns the names of the channels that [`ReadOptions::context`] selects, which may itself give column numbers.
 ///
 /// # Errors
 ///
@@ -55,7 +55,7 @@ pub fn read_with_context(
     read_pieces(&pieces, options, progress)
 }
 
-/// As [`read_with_context`], of files of which some may be read in part.
+/// As [`read_with_context`], for files of which some may be read in part.
 ///
 /// # Errors
 ///
@@ -68,7 +68,7 @@ pub fn read_pieces(
     set(pieces, &[], options, progress)
 }
 
-/// Reads a piece of a set of which other pieces have been read before: their `channels` are channels here even if they never change.
+/// Reads another piece of a set. The `channels` of the pieces read before remain channels even if they never change here.
 ///
 /// # Errors
 ///
@@ -109,7 +109,7 @@ fn set(
         return Err(nothing("there is no episode of two samples or more"));
     }
     let context = if options.context.is_empty() { Vec::new() } else { std::mem::take(&mut drafts.context) };
-    // What never changes is no channel any more.
+    // A column that never changes has been dropped from the channels.
     let names = drafts.names();
     if let Some(constant) = context.iter().find(|name| !names.contains(name)) {
         return Err(roles::no_column(constant, &names, "--context, among the channels that were read"));
@@ -117,7 +117,7 @@ fn set(
     Ok((drafts.checked(), context))
 }
 
-/// Reads with a library that a feature brings, and that may panic at damaged files.
+/// Reads with the library of an optional feature, which may panic on damaged files.
 macro_rules! with_feature {
     ($feature:literal, $name:expr, $read:expr) => {{
         #[cfg(feature = $feature)]
@@ -161,7 +161,7 @@ fn drafts(path: &Path, options: &ReadOptions, progress: &mut dyn FnMut(u64)) -> 
     drafts.map(|drafts| with_idle(drafts, format, options))
 }
 
-/// With a remark on every option that says nothing of this format.
+/// Adds a finding for every option that has no effect in this format.
 fn with_idle(mut drafts: RawRecordings, format: Format, options: &ReadOptions) -> RawRecordings {
     let remark = |(flag, of): (&str, &str)| {
         let what = format!("{flag} has no effect on {}", sniff::name(format));
@@ -171,7 +171,7 @@ fn with_idle(mut drafts: RawRecordings, format: Format, options: &ReadOptions) -
     drafts
 }
 
-/// Records of a part of a text.
+/// Reads the records of a part of a text.
 fn part(
     path: &Path,
     span: &Span,
@@ -186,18 +186,19 @@ fn part(
         };
         drafts.map(|drafts| with_idle(drafts, format, options))
     });
-    // What it says of a file that has changed is of no use.
+    // If the file has changed, its contents are of no use.
     span.require_unchanged(path)?;
     drafts
 }
 
-/// A file in pieces of whole movements, of at most so many bytes unless a movement has more: some of CSV, TSV and columns of blanks, and of JSON
-/// lines with an episode each. Joined, their recordings are those of the whole file. One piece if the file is small or cannot be cut: of
-/// another format, without a column of episodes, or with episodes that others interrupt. It is read once for that, piece by piece.
+/// Cuts a file into pieces of whole movements, each of at most `most` bytes unless a movement has more. Possible for some CSV, TSV and
+/// blank-separated files, and for JSON lines with one episode per line. Joined, the pieces' recordings equal those of the whole file.
+/// Returns one piece if the file is small or cannot be cut: other formats, no column of episodes, or interleaved episodes. Reads the file
+/// once, piece by piece.
 ///
 /// # Errors
 ///
-/// What reading the whole file would refuse, as far as it has been read.
+/// The errors of reading the whole file, as far as it has been read.
 pub fn pieces_of(
     file: Piece,
     most: u64,
@@ -224,7 +225,7 @@ fn not_built(name: &str, feature: &str) -> ReadError {
     ReadError::Unsupported(Fault::new(what, name, remedy))
 }
 
-/// The files of a folder in natural order, as one set.
+/// Reads the files of a folder in natural order as one set.
 fn folder(
     path: &Path,
     name: &str,
@@ -248,11 +249,12 @@ fn listed(folder: &Path, name: &str) -> Result<Vec<PathBuf>, ReadError> {
     Ok(files)
 }
 
-/// The files that a folder with a movement each is read as, in their order; a file, or a folder that is one data set, as it is.
+/// The files of a folder with one movement each, in the order in which they are read. A file, or a folder that is one data set, is returned
+/// as it is.
 ///
 /// # Errors
 ///
-/// [`ReadError`] of a folder that cannot be read.
+/// [`ReadError`] for a folder that cannot be read.
 pub fn files_of(path: &Path) -> Result<Vec<PathBuf>, ReadError> {
     let name = name_of(path);
     if path.is_dir() && matches!(sniff::folder(path, &name)?, Folder::Files) {
@@ -261,7 +263,7 @@ pub fn files_of(path: &Path) -> Result<Vec<PathBuf>, ReadError> {
     Ok(vec![path.to_owned()])
 }
 
-/// Episodes of one file among several carry its name, since they are numbered in each.
+/// Prefixes the names of episodes with that of their file, because episodes are numbered within each of several files.
 fn named_by_file(mut drafts: RawRecordings, file: &Path) -> RawRecordings {
     let stem = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     for draft in drafts.episodes.iter_mut().filter(|draft| draft.name != stem) {

@@ -1,4 +1,4 @@
-//! Files with an end. Devices have none, and a pipe is waited for.
+//! Regular files. Devices have no end, and reading from a pipe may block.
 
 use std::fs::{self, File, Metadata};
 use std::io::{self, ErrorKind, Read};
@@ -7,21 +7,21 @@ use std::time::SystemTime;
 
 use serde::{Deserialize, Serialize};
 
-/// What tells that a file has changed.
+/// Size and modification time, by which a changed file is recognised.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FileState {
-    /// Its size.
+    /// Size in bytes.
     pub bytes: u64,
-    /// When it was written to, in nanoseconds since 1970.
+    /// Time of the last modification, in nanoseconds since 1970.
     pub modified: i64,
 }
 
 impl FileState {
-    /// As it is now.
+    /// The present state of a file.
     ///
     /// # Errors
-    /// What the system says, and what is not a plain file.
+    /// Errors of the operating system, and a path that is no regular file.
     pub fn of(path: &Path) -> io::Result<FileState> {
         let found = plain(path)?;
         let modified = match found.modified()?.duration_since(SystemTime::UNIX_EPOCH) {
@@ -32,21 +32,21 @@ impl FileState {
     }
 }
 
-/// Most bytes of a text written by hand, such as a configuration or the description of a robot.
+/// Maximum size in bytes of a text written by hand, such as a configuration or the description of a robot.
 const TEXT: u64 = 16 << 20;
 
 /// Reads a text written by hand, of at most 16 MB.
 ///
 /// # Errors
-/// As [`read_bytes`], and what is not UTF-8.
+/// As [`read_bytes`], and text that is not UTF-8.
 pub fn read_text(path: &Path) -> io::Result<String> {
     String::from_utf8(read_bytes(path, TEXT)?).map_err(|_| io::Error::new(ErrorKind::InvalidData, "it is not UTF-8"))
 }
 
-/// Reads what a file holds when it is opened, and nothing that is written to it later.
+/// Reads the contents that a file has when it is opened, and nothing that is appended later.
 ///
 /// # Errors
-/// What the system says, what is not a plain file, and one of more than `most` bytes.
+/// Errors of the operating system, a path that is no regular file, and a file of more than `most` bytes.
 pub fn read_bytes(path: &Path, most: u64) -> io::Result<Vec<u8>> {
     let (file, len) = open(path)?;
     if len > most {
@@ -58,7 +58,7 @@ pub fn read_bytes(path: &Path, most: u64) -> io::Result<Vec<u8>> {
 /// Reads a source such as standard input to its end.
 ///
 /// # Errors
-/// What the system says, and more than `most` bytes.
+/// Errors of the operating system, and more than `most` bytes.
 pub fn read_bounded(source: impl Read, most: u64) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     source.take(most.saturating_add(1)).read_to_end(&mut bytes)?;
@@ -69,9 +69,9 @@ fn too_large(most: u64) -> io::Error {
     io::Error::new(ErrorKind::FileTooLarge, format!("it has more than {} MB", most >> 20))
 }
 
-/// Opens a file, and says how many bytes it has now.
+/// Opens a file and returns its present size in bytes.
 pub(crate) fn open(path: &Path) -> io::Result<(File, u64)> {
-    // Before it is opened: that would wait for the other end of a pipe.
+    // Checked before opening, because opening a pipe waits for its other end.
     plain(path)?;
     let file = File::open(path)?;
     let len = file.metadata()?.len();

@@ -1,52 +1,53 @@
-//! The same movements at even times.
+//! Resamples movements at even times.
 
 use nalgebra::{DMatrix, DMatrixView};
 use thiserror::Error;
 
 use motion::{Episode, Recordings, Times};
 
-/// More numbers than this are refused: a rate in the wrong unit should not fill the memory.
+/// Maximum count of numbers, so that a rate in the wrong unit does not fill the memory.
 const MOST_NUMBERS: f64 = 1e9;
 
-/// Why recordings cannot be resampled.
+/// Reasons why recordings cannot be resampled.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum ResampleError {
-    /// No rate.
+    /// The rate is not valid.
     #[error("{rate} Hz is not a rate; give a positive, finite number")]
     Rate {
-        /// As given.
+        /// The given rate.
         rate: f64,
     },
     /// An episode would have a single sample.
     #[error("episode {episode} lasts {seconds} s, less than a step at {rate} Hz; give a higher rate")]
     Short {
-        /// Its name.
+        /// Name of the episode.
         episode: String,
-        /// How long it lasts.
+        /// Its duration.
         seconds: f64,
         /// In Hz.
         rate: f64,
     },
-    /// Too many samples.
+    /// There would be too many samples.
     #[error("at {rate} Hz there would be {samples:.1e} samples; give a lower rate")]
     Many {
         /// In Hz.
         rate: f64,
-        /// Over all episodes.
+        /// Number of samples of all episodes.
         samples: f64,
     },
 }
 
-/// The same movements `rate` times a second, from each one's first sample to the last that fits.
+/// Resamples the movements `rate` times a second, from the first sample of each to the last that fits.
 ///
-/// Positions, and velocities where there are some, follow monotone cubics through the samples (Fritsch and Butland):
-/// between two samples no value is beyond both. For learning nothing need be resampled; steps are taken with their
-/// own times.
+/// Positions, and velocities if there are any, follow monotone cubics through the samples (Fritsch and Butland), whose
+/// values between two samples never lie beyond either. Learning does not need resampling; it uses the actual times of
+/// all steps.
 ///
 /// # Errors
 ///
-/// [`ResampleError`]: no rate, one so low that an episode is a single sample, or so high that memory would not do.
+/// [`ResampleError`]: an invalid rate, one so low that an episode becomes a single sample, or one so high that memory
+/// would not suffice.
 pub fn resampled(recordings: &Recordings, rate: f64) -> Result<Recordings, ResampleError> {
     if !(rate > 0.0 && rate.is_finite()) {
         return Err(ResampleError::Rate { rate });
@@ -65,7 +66,7 @@ fn along(episode: &Episode, rate: f64) -> Result<Episode, ResampleError> {
         return Ok(episode.clone());
     }
     let seconds = episode.times.duration();
-    // Stamps that were rounded do not cost the last sample.
+    // Tolerance for rounded stamps, so that the last sample is not lost.
     let steps = (seconds * rate * (1.0 + 1e-9)).floor() as usize;
     if steps == 0 {
         return Err(ResampleError::Short { episode: episode.name.clone(), seconds, rate });
@@ -73,7 +74,7 @@ fn along(episode: &Episode, rate: f64) -> Result<Episode, ResampleError> {
     let times: Vec<f64> = (0..=steps).map(|step| step as f64 / rate).collect();
     let own: Vec<f64> = (0..episode.n_samples()).map(|sample| episode.times.seconds(0, sample)).collect();
     let at_times = |values: &DMatrix<f64>| interpolated(&own, values.as_view(), &times);
-    // The last sample that is not after a time.
+    // The last sample at or before a time.
     let before = |time: &f64| own.partition_point(|stamp| stamp <= time).saturating_sub(1);
     Ok(Episode {
         name: episode.name.clone(),
@@ -86,7 +87,7 @@ fn along(episode: &Episode, rate: f64) -> Result<Episode, ResampleError> {
     })
 }
 
-/// Values (n, N) at stamps (N), at other times (M) that ascend: (n, M).
+/// Interpolates values (n, N) at stamps (N) to other, ascending times (M): (n, M).
 fn interpolated(stamps: &[f64], values: DMatrixView<'_, f64>, times: &[f64]) -> DMatrix<f64> {
     let slopes = slopes(stamps, values);
     let mut interval = 0;
@@ -110,7 +111,7 @@ fn interpolated(stamps: &[f64], values: DMatrixView<'_, f64>, times: &[f64]) -> 
     result
 }
 
-/// Slope at every stamp, (n, N): 0 at a turn, else a weighted harmonic mean of the slopes on both sides.
+/// Slope at every stamp, (n, N): 0 at a turning point, else a weighted harmonic mean of the slopes on both sides.
 fn slopes(stamps: &[f64], values: DMatrixView<'_, f64>) -> DMatrix<f64> {
     let last = stamps.len() - 1;
     let width = |i: usize| stamps[i + 1] - stamps[i];
@@ -134,7 +135,7 @@ fn slopes(stamps: &[f64], values: DMatrixView<'_, f64>) -> DMatrix<f64> {
     })
 }
 
-/// The slope of the parabola through three samples at the outermost, kept from overshooting.
+/// Slope at an end: that of the parabola through the outermost three samples, limited to avoid overshoot.
 fn at_end((width, secant): (f64, f64), (next_width, next): (f64, f64)) -> f64 {
     let slope = ((2.0 * width + next_width) * secant - width * next) / (width + next_width);
     if slope * secant <= 0.0 {

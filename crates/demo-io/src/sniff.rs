@@ -1,4 +1,4 @@
-//! Which format a file has: by its first bytes, then by its extension.
+//! Detects the format of a file by its first bytes, then by its extension.
 
 use std::io::Read as _;
 use std::path::Path;
@@ -7,11 +7,11 @@ use crate::input::Input;
 use crate::regular_file::open;
 use crate::{Fault, Format, ReadError};
 
-/// Kind of content, by the first bytes.
+/// Kind of contents, by the first bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Content {
     Known(Format),
-    /// Could be any of the formats made of lines.
+    /// Possibly any of the line-based formats.
     Text,
     Nothing,
     Other,
@@ -19,7 +19,7 @@ enum Content {
 
 const HDF5: &[u8] = b"\x89HDF\r\n\x1a\n";
 
-/// First bytes of the formats that are not text.
+/// First bytes of the binary formats.
 const MAGIC: [(&[u8], Format); 7] = [
     (crate::arrays::npy::MAGIC, Format::Npy),
     (b"PK\x03\x04", Format::Npz),
@@ -30,11 +30,11 @@ const MAGIC: [(&[u8], Format); 7] = [
     (b"MATLAB 5.0", Format::Mat),
 ];
 
-/// The format to read `input` as: content wins over extension, `--as` over both.
+/// The format in which to read `input`. Content takes precedence over the extension, `--as` over both.
 ///
 /// # Errors
 ///
-/// Known formats that are not read, and files that are not what `--as` or their extension promises.
+/// Known formats that are not supported, and files that do not match `--as` or their extension.
 pub(crate) fn format(input: &Input<'_>) -> Result<Format, ReadError> {
     let extension = input.path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
     refuse_unread(input, &extension)?;
@@ -101,13 +101,14 @@ fn content(head: &[u8], extension: &str) -> Content {
     }
 }
 
-/// Whether a text begins as a list of lists or of objects, with commas, does.
+/// Whether a text begins like a list of lists or of objects.
 fn is_json_list(text: &[u8]) -> bool {
     let mut letters = text.iter().filter(|byte| !byte.is_ascii_whitespace());
     letters.next() == Some(&b'[') && matches!(letters.next(), Some(b'[' | b'{')) && text.contains(&b',')
 }
 
-/// Whether a line of a text is mostly numbers, as rows of a table are; what only has numbers in it is something else.
+/// Whether a line of a text consists mostly of numbers, like a row of a table. A text that merely contains numbers is
+/// something else.
 fn has_rows(head: &[u8]) -> bool {
     let is_row = |line: &str| {
         let fields = line.split([',', ';', '\t', '|', ' ']).filter(|field| !field.is_empty());
@@ -119,7 +120,7 @@ fn has_rows(head: &[u8]) -> bool {
     String::from_utf8_lossy(head).lines().any(is_row)
 }
 
-/// The header of a MAT-file of version 5 with another description than MATLAB's: the byte order is at byte 126.
+/// The header of a MAT-file of version 5 with a description other than MATLAB's: the byte order is at byte 126.
 fn is_mat(head: &[u8]) -> bool {
     head.get(126..128).is_some_and(|order| order == b"IM" || order == b"MI")
 }
@@ -155,7 +156,7 @@ fn not_this(input: &Input<'_>, asked: Format, found: &str) -> ReadError {
     ReadError::NotThisFormat(Fault::new(what, &input.name, remedy))
 }
 
-/// First bytes of formats that are not read, what they are, and the command that helps.
+/// First bytes of unsupported formats, their names, and the command that helps.
 const NOT_READ: [(&[u8], &str, &str); 4] = [
     (
         b"SQLite format 3\0",
@@ -171,7 +172,7 @@ const NOT_READ: [(&[u8], &str, &str); 4] = [
     (b"\x28\xb5\x2f\xfd", "a file compressed by zstd, which is not read", "unzstd FILE"),
 ];
 
-/// Refuses known formats that are not read.
+/// Refuses known formats that are not supported.
 fn refuse_unread(input: &Input<'_>, extension: &str) -> Result<(), ReadError> {
     let head = &input.head[..];
     let begins = |(magic, ..): &&(&[u8], &'static str, &'static str)| head.starts_with(magic);
@@ -191,12 +192,12 @@ fn refuse_unread(input: &Input<'_>, extension: &str) -> Result<(), ReadError> {
     Err(ReadError::Unsupported(Fault::new(what, &input.name, remedy)))
 }
 
-/// HDF5 behind MATLAB's header of 512 bytes.
+/// Whether a file is HDF5 behind MATLAB's header of 512 bytes.
 fn is_mat73(head: &[u8]) -> bool {
     head.starts_with(b"MATLAB 7.3") || (head.starts_with(b"MATLAB") && head.get(512..520) == Some(HDF5))
 }
 
-/// What a folder is, if it is one thing rather than a folder of recordings.
+/// The kind of a folder: one data set, or a folder of recordings.
 pub(crate) enum Folder {
     /// `meta/info.json` and `data/`.
     LeRobot,
@@ -205,7 +206,7 @@ pub(crate) enum Folder {
 
 /// # Errors
 ///
-/// Folders of formats that are not read.
+/// Folders in unsupported formats.
 pub(crate) fn folder(path: &Path, name: &str) -> Result<Folder, ReadError> {
     let has = |inside: &str| path.join(inside).exists();
     if has("meta/info.json") {
@@ -219,7 +220,7 @@ pub(crate) fn folder(path: &Path, name: &str) -> Result<Folder, ReadError> {
     Ok(Folder::Files)
 }
 
-/// How a model begins that was learnt from recordings.
+/// The first bytes of a model that was learnt from recordings.
 const MODEL: &[u8] = br#"{"format":"policy-align model""#;
 
 /// Whether a file is a model or its trust report, which `fit` may have written beside the recordings.
@@ -232,7 +233,7 @@ fn is_learnt(path: &Path) -> bool {
     read.is_ok() && start == MODEL
 }
 
-/// Whether a file in a folder is one to read; others (notes, videos, pictures, what was learnt) are passed over.
+/// Whether a file in a folder is to be read. Others (notes, videos, images, models) are skipped.
 pub(crate) fn is_recording(path: &Path) -> bool {
     let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
     let hidden = path.file_name().is_some_and(|name| name.to_string_lossy().starts_with('.'));

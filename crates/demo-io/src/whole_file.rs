@@ -1,4 +1,4 @@
-//! Files that are written whole or not at all.
+//! Atomic writing: a file is written completely or not at all.
 
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Seek, Write};
@@ -8,28 +8,28 @@ use std::time::Duration;
 
 use tempfile::NamedTempFile;
 
-/// Names of drafts begin and end so.
+/// Prefix and suffix of the names of drafts.
 const PREFIX: &str = ".policy-align-";
 const SUFFIX: &str = ".part";
 
-/// Longer than a new draft is without its lock.
+/// Longer than a new draft remains without its lock.
 const UNLOCKED: Duration = Duration::from_secs(60);
 
-/// Drafts that are being written by this process.
+/// Drafts that this process is writing.
 static DRAFTS: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
-/// What a file is written to.
+/// Destination of the bytes of a file.
 pub trait Sink: Write + Seek {}
 
 impl<T: Write + Seek> Sink for T {}
 
-/// Writes a whole file or nothing: `fill` writes to a draft in the same folder, and an old file is replaced once everything is
-/// on the disk. Its permissions stay, and so do links to it.
+/// Writes a whole file or nothing: `fill` writes to a draft in the same folder, which replaces an old file once all bytes are
+/// on disk. The old file's permissions are kept, and links to it stay valid.
 ///
 /// A pipe or device is written to directly.
 ///
 /// # Errors
-/// What the system says, or `fill`.
+/// Errors of the operating system or of `fill`.
 pub fn write_whole<E: From<io::Error>>(
     path: &Path,
     fill: impl FnOnce(&mut dyn Sink) -> Result<(), E>,
@@ -37,12 +37,12 @@ pub fn write_whole<E: From<io::Error>>(
     Ok(TempFile::of(path, fill)?.persist()?)
 }
 
-/// Removes drafts that are being written and prevents new ones, before the process ends at once, as on an interrupt. Old files
-/// stay.
+/// Removes the drafts of this process and prevents new ones, before the process ends abruptly, as after an interrupt. Old
+/// files stay.
 pub fn abandon_drafts() {
     let drafts = drafts();
     for draft in drafts.iter() {
-        // The process ends: nothing can be done about a failure.
+        // The process is ending, so a failure is ignored.
         let _ = fs::remove_file(draft);
     }
     std::mem::forget(drafts);
@@ -52,27 +52,27 @@ fn drafts() -> MutexGuard<'static, Vec<PathBuf>> {
     DRAFTS.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// A file that is on the disk, but not yet in its place. So files that belong together can all be written before the first is
+/// A file on disk that is not yet in its place. Files that belong together can thus all be written before the first one is
 /// replaced.
 pub struct TempFile {
     place: PathBuf,
-    /// None of what is no plain file.
+    /// `None` if the destination is no regular file.
     held: Option<(NamedTempFile, Known)>,
 }
 
-/// What [`abandon_drafts`] would remove, as long as this lives.
+/// A draft that [`abandon_drafts`] would remove, while this value exists.
 struct Known(PathBuf);
 
 impl TempFile {
     /// As [`write_whole`], but an old file stays until [`persist`](Self::persist).
     ///
     /// # Errors
-    /// What the system says, or `fill`.
+    /// Errors of the operating system or of `fill`.
     pub fn of<E: From<io::Error>>(
         path: &Path,
         fill: impl FnOnce(&mut dyn Sink) -> Result<(), E>,
     ) -> Result<TempFile, E> {
-        // A link stays a link: the file behind it is replaced.
+        // A link stays a link: its target is replaced.
         let place = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
         if fs::metadata(&place).is_ok_and(|found| !found.is_file()) {
             let mut file = BufWriter::new(File::options().write(true).open(&place)?);
@@ -89,13 +89,13 @@ impl TempFile {
         Ok(TempFile { place, held: Some((held, known)) })
     }
 
-    /// Puts the file in its place, and replaces an old one.
+    /// Moves the file to its place and replaces an old one.
     ///
     /// # Errors
-    /// What the system says.
+    /// Errors of the operating system.
     pub fn persist(self) -> io::Result<()> {
         let Some((file, known)) = self.held else { return Ok(()) };
-        // An interrupt comes before or after.
+        // The lock prevents an interrupt in between.
         let drafts = drafts();
         let persisted = file.persist(&self.place);
         drop(drafts);
@@ -104,8 +104,7 @@ impl TempFile {
     }
 }
 
-/// A new file that only its owner's rights of the old one, or those of any new file, are given to. It is locked as long as
-/// it is written.
+/// Creates a draft with the permissions of the old file, or those of any new file. It stays locked while it is written.
 fn begun(place: &Path) -> io::Result<(NamedTempFile, Known)> {
     let folder = place.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     remove_abandoned(folder);
@@ -119,27 +118,27 @@ fn begun(place: &Path) -> io::Result<(NamedTempFile, Known)> {
     }
     let mut drafts = drafts();
     let file = builder.tempfile_in(folder)?;
-    // Without locks, drafts are never taken for abandoned.
+    // Without locks, drafts are never considered abandoned.
     let _ = file.as_file().try_lock();
     drafts.push(file.path().to_owned());
     let known = Known(file.path().to_owned());
     Ok((file, known))
 }
 
-/// Removes what killed programs left in a folder.
+/// Removes drafts that killed programs left in a folder.
 fn remove_abandoned(folder: &Path) {
     for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
         let name = entry.file_name();
         let name = name.to_string_lossy();
         let is_draft = name.starts_with(PREFIX) && name.ends_with(SUFFIX);
         if is_draft && entry.file_type().is_ok_and(|kind| kind.is_file()) && is_abandoned(&entry.path()) {
-            // Another program may have been faster.
+            // Another program may have removed it already.
             let _ = fs::remove_file(entry.path());
         }
     }
 }
 
-/// Whether no process has it locked, and not just because it is new.
+/// Whether no process holds the lock and the draft is old enough to have had one.
 fn is_abandoned(draft: &Path) -> bool {
     let Ok(file) = File::open(draft) else { return false };
     let age = file.metadata().and_then(|found| found.modified()).ok().and_then(|time| time.elapsed().ok());

@@ -1,4 +1,4 @@
-//! Recordings to files.
+//! Writes recordings to files.
 
 mod delimited;
 mod json_lines;
@@ -15,113 +15,113 @@ use thiserror::Error;
 use crate::whole_file::{Sink, write_whole};
 use motion::Recordings;
 
-/// Why nothing was written.
+/// Reasons why nothing was written.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum WriteError {
-    /// The extension names no format that is written.
+    /// No format for writing has this extension.
     #[error("files ending in '.{extension}' are not written; use one of: csv, tsv, npz, jsonl, mcap")]
     Extension {
-        /// Without its point.
+        /// Extension without its dot.
         extension: String,
     },
-    /// The format needs a feature that was not built in.
+    /// The format needs a feature that was not compiled in.
     #[error("'.{extension}' needs demo-io's feature '{feature}', which was not built in")]
     Feature {
-        /// Without its point.
+        /// Extension without its dot.
         extension: String,
-        /// To be turned on.
+        /// Feature to enable.
         feature: &'static str,
     },
-    /// The system does not let us write.
+    /// The operating system does not allow writing.
     #[error("{} cannot be written: {source}", path.display())]
     Io {
         /// The file.
         path: PathBuf,
-        /// What the system says.
+        /// The system's error.
         source: io::Error,
     },
-    /// A reader would take a channel for something else.
+    /// A reader would assign another role to a channel.
     #[error("with these names a reader would take {found} for the state; write .jsonl or .npz, or rename the channels")]
     Names {
-        /// What would be read as state.
+        /// The columns that would be read as state.
         found: String,
     },
-    /// Velocities in some episodes only.
+    /// Only some episodes have velocities.
     #[error(
         "episode {episode} has no velocities but others have; this format has columns for all or none, .jsonl has not"
     )]
     SomeVelocities {
-        /// The first without.
+        /// The first episode without velocities.
         episode: String,
     },
-    /// Only MCAP holds a robot.
+    /// Only MCAP can hold a robot.
     #[error("files ending in '.{extension}' hold no robot; write .mcap")]
     NoRobot {
-        /// Without its point.
+        /// Extension without its dot.
         extension: String,
     },
-    /// A robot cannot be where a sample is.
+    /// The robot cannot take the state of a sample.
     #[error("the robot cannot be where {place} is: {reason}")]
     Robot {
         /// Episode and sample.
         place: String,
-        /// What the robot says.
+        /// The robot's explanation.
         reason: String,
     },
-    /// Stamps of ROS 2 end after 68 years.
+    /// The stamps of ROS 2 end after 68 years.
     #[error(
         "a sample of episode {episode} is {seconds} s after the first, and the stamps of the whole file end before 68 years"
     )]
     TooLong {
-        /// In which it is.
+        /// The episode of the sample.
         episode: String,
-        /// After the first sample of its episode.
+        /// Seconds after the first sample of the episode.
         seconds: f64,
     },
     /// There is no episode or no channel.
     #[error("there is nothing to write: {episodes} episodes of {channels} channels")]
     Nothing {
-        /// How many.
+        /// Number of episodes.
         episodes: usize,
-        /// How many.
+        /// Number of channels.
         channels: usize,
     },
 }
 
-/// Writes recordings in the format of the extension: csv, tsv, npz, jsonl, and with the feature `mcap` mcap.
+/// Writes recordings in the format of the extension: csv, tsv, npz, jsonl, and mcap with the feature `mcap`.
 ///
-/// The file appears whole or not at all: a temporary file in the same folder is renamed.
+/// The file appears completely or not at all: a temporary file in the same folder is renamed.
 ///
 /// # Errors
 ///
-/// [`WriteError`]: an unknown extension, names that would be misread, or what the system refuses.
+/// [`WriteError`]: an unknown extension, names that would be misread, or an error of the operating system.
 pub fn write(path: &Path, recordings: &Recordings) -> Result<(), WriteError> {
     write_any(path, recordings, None)
 }
 
-/// [`write()`] to MCAP with the robot that moves: topics `/robot_description`, its URDF as `std_msgs/msg/String`, and `/tf`, where
-/// its links are at every sample as `tf2_msgs/msg/TFMessage`, beside `/joint_states`.
+/// As [`write()`] to MCAP, with the moving robot: beside `/joint_states`, the topics `/robot_description`, its URDF as
+/// `std_msgs/msg/String`, and `/tf`, the frames of its links at every sample as `tf2_msgs/msg/TFMessage`.
 ///
 /// # Errors
 ///
-/// [`WriteError`]: another format than MCAP, a state in which the robot cannot be, or what [`write()`] refuses.
+/// [`WriteError`]: a format other than MCAP, a state that the robot cannot take, or an error of [`write()`].
 pub fn write_with_robot(path: &Path, recordings: &Recordings, robot: &dyn LinkFrames) -> Result<(), WriteError> {
     write_any(path, recordings, Some(robot))
 }
 
-/// A robot as viewers draw it: its description, and the frames of its links in a state.
+/// A robot for viewers: its description, and the frames of its links in a state.
 pub trait LinkFrames {
     /// The text of its URDF.
     fn description(&self) -> &str;
 
-    /// Names of parent and child of every link but the root.
+    /// Names of parent and child for every link except the root.
     fn links(&self) -> &[[String; 2]];
 
-    /// In a state (n), the pose of each of [`LinkFrames::links`] in its parent's frame, metres, in their order.
+    /// In a state (n), the pose of each of [`LinkFrames::links`], in their order, in its parent's frame, in metres.
     ///
     /// # Errors
-    /// In a sentence, why the robot cannot be in this state.
+    /// A sentence that explains why the robot cannot take this state.
     fn transforms(&self, state: DVectorView<'_, f64>) -> Result<Vec<Isometry3<f64>>, String>;
 }
 
@@ -146,7 +146,7 @@ fn write_any(path: &Path, recordings: &Recordings, robot: Option<&dyn LinkFrames
     }
 }
 
-/// What goes wrong while bytes are made.
+/// Errors while bytes are generated.
 #[derive(Debug, Error)]
 enum Failure {
     #[error(transparent)]

@@ -1,4 +1,4 @@
-//! NumPy's files, in every order, size and version.
+//! NumPy files in every order, size and version.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
@@ -13,7 +13,7 @@ fn every(dt: f64) -> ReadOptions {
     ReadOptions { dt: Some(dt), ..ReadOptions::default() }
 }
 
-/// A .npy file of a version.
+/// A .npy file of the given version.
 fn npy(version: u8, descr: &str, fortran: bool, shape: &str, data: &[u8]) -> Vec<u8> {
     let order = if fortran { "True" } else { "False" };
     let text = format!("{{'descr': {descr}, 'fortran_order': {order}, 'shape': {shape}, }}\n");
@@ -27,7 +27,7 @@ fn npy(version: u8, descr: &str, fortran: bool, shape: &str, data: &[u8]) -> Vec
     file
 }
 
-/// 0, 1, 2, … as some type.
+/// 0, 1, 2, … as values of some type.
 fn counting<const N: usize>(count: u8, bytes: impl Fn(u8) -> [u8; N]) -> Vec<u8> {
     (0..count).flat_map(bytes).collect()
 }
@@ -84,7 +84,7 @@ fn what_is_no_array_of_numbers_is_refused() {
     refused("a.npy", npy(1, "'<f8'", false, "(1, 1, 3, 4)", &data), &every(1.0), "NoRoles", &["4 indices"]);
 }
 
-/// An archive of arrays, deflated or not.
+/// An archive of arrays, compressed or not.
 fn npz(deflated: bool, arrays: &[(&str, Vec<u8>)]) -> Vec<u8> {
     let mut bytes = Vec::new();
     let mut archive = rawzip::ZipArchiveWriter::new(&mut bytes);

@@ -1,4 +1,5 @@
-//! Bags beside the library of their format: it reads what we write, and we read what it writes, however it packs.
+//! Comparison with the reference library of the bag format: it reads our bags, and we read its bags with every
+//! compression.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 #![cfg(feature = "mcap")]
@@ -17,7 +18,7 @@ use motion::{Channel, Episode, Recordings, Source};
 use nalgebra::DMatrix;
 use proptest::prelude::*;
 
-/// So many samples that they fill several chunks.
+/// Recordings with enough samples to fill several chunks.
 fn recordings(samples: usize) -> Recordings {
     let episode = |number: usize| Episode {
         name: format!("take {number}"),
@@ -82,7 +83,7 @@ fn the_library_reads_every_message_and_the_summary_of_what_is_written() {
     }
 }
 
-/// As viewers read: by the index, from a time on.
+/// Reads as viewers do: by the index, from a given time.
 #[test]
 fn the_library_finds_messages_by_their_time() {
     let bytes = written(&recordings(4000));
@@ -105,7 +106,7 @@ fn the_library_finds_messages_by_their_time() {
     assert_eq!(found, 101);
 }
 
-/// The messages of a bag as the library packs them.
+/// The messages of a bag, written again by the library.
 fn packed(bytes: &[u8], options: WriteOptions) -> Vec<u8> {
     let mut file = Cursor::new(Vec::new());
     let mut bag = options.create(&mut file).unwrap();
@@ -158,7 +159,7 @@ proptest! {
         let put_in: Vec<f64> = made.episodes.iter().flat_map(|episode| episode.positions.iter().copied()).collect();
         prop_assert_eq!(all, put_in);
 
-        // A recorder that was killed: what comes is the beginning.
+        // A killed recorder leaves the beginning of the bag.
         let cut = (theirs.len() as f64 * cut) as usize;
         if let Ok(found) = read_bytes(&theirs[..cut]) {
             let all: Vec<f64> = found.episodes.iter().flat_map(|episode| episode.positions.iter().copied()).collect();
@@ -167,7 +168,7 @@ proptest! {
         }
     }
 
-    /// A check sum covers every byte of the data.
+    /// A checksum covers every byte of the data.
     #[test]
     fn a_changed_byte_is_noticed(at in 0.0f64..1.0, change in 1u8..=255, samples in 20usize..60) {
         let made = recordings(samples);

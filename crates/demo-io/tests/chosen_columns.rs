@@ -1,4 +1,4 @@
-//! Columns that flags name, in every format: those that there are, and those that there are not.
+//! Selection of columns by flags in every format, with existing and missing names.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 #![cfg(all(feature = "hdf5", feature = "mat", feature = "mcap", feature = "parquet"))]
@@ -14,12 +14,12 @@ fn listed(patterns: &[&str]) -> Vec<String> {
     patterns.iter().map(|&pattern| pattern.to_owned()).collect()
 }
 
-/// Numbers that tell sample and column apart.
+/// A number that identifies sample and column.
 fn value(sample: usize, column: usize) -> f64 {
     100.0 * column as f64 + sample as f64 + 0.25
 }
 
-/// An array (samples, columns) as NumPy writes it.
+/// An array (samples, columns) in NumPy's format.
 fn npy(shape: &[usize], values: impl Iterator<Item = f64>) -> Vec<u8> {
     let shape: String = shape.iter().flat_map(|length| [length.to_string(), ", ".to_owned()]).collect();
     let text = format!("{{'descr': '<f8', 'fortran_order': False, 'shape': ({shape}), }}\n");
@@ -54,7 +54,7 @@ fn every(dt: f64) -> ReadOptions {
     ReadOptions { dt: Some(dt), ..ReadOptions::default() }
 }
 
-/// The state and the velocities of the first episode by the columns that they came from.
+/// The source columns of the state and of the velocities of the first episode.
 fn columns(found: &Recordings) -> (Vec<usize>, Vec<usize>) {
     let of = |matrix: &DMatrix<f64>| -> Vec<usize> {
         let first = matrix.column(0);
@@ -105,7 +105,7 @@ fn columns_of_one_array_are_chosen() {
     }
 }
 
-/// A column that is named is one of the file, whatever else is in it.
+/// A named column is always one of the file, whatever else the file contains.
 #[test]
 fn columns_of_demonstrations_are_chosen() {
     let both = npz(&[("demo_0", plane(9, 5)), ("demo_1", plane(7, 5))]);
@@ -143,7 +143,7 @@ fn columns_of_demonstrations_are_chosen() {
     }
 }
 
-/// Velocities that are recorded beside go with the columns that stay.
+/// Velocities in a separate array stay with the columns that are kept.
 #[test]
 fn recorded_velocities_follow_their_state() {
     let file = npz(&[("x", plane(9, 3)), ("v", plane(9, 3)), ("dt", npy(&[], std::iter::once(0.1)))]);
@@ -162,7 +162,7 @@ fn columns_of_velocity(found: &Recordings) -> Vec<f64> {
     found.episodes[0].velocities.as_ref().unwrap().column(0).iter().copied().collect()
 }
 
-/// Samples of other libraries.
+/// Files of other libraries.
 #[test]
 fn columns_of_hdf5_and_mat_are_chosen() {
     let samples = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/samples");
@@ -183,7 +183,7 @@ fn columns_of_hdf5_and_mat_are_chosen() {
     }
 }
 
-/// In every format, a name that is none is an error with the names that there are.
+/// In every format, a name that does not exist is an error that lists the existing names.
 #[test]
 fn what_names_nothing_is_refused() {
     let files = Files::new();
@@ -212,7 +212,7 @@ fn what_names_nothing_is_refused() {
     }
 }
 
-/// A column that one of several files has is no mistake.
+/// A name that exists in only one of several files is valid.
 #[test]
 fn one_file_of_several_may_lack_what_is_ignored() {
     let files = Files::new();

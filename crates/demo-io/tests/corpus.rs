@@ -1,4 +1,5 @@
-//! What fuzzing found, and what people made of files: every input of `fuzz/corpus` again.
+//! Regression tests: every input in `fuzz/corpus`, from fuzzing and from users' files, is read
+//! again.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 

@@ -1,4 +1,4 @@
-//! Formats of other communities, in files that their own tools wrote, and there and back through all that we write.
+//! Foreign formats, in files written by their own tools, and round trips through all formats that we write.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 #![cfg(all(feature = "hdf5", feature = "mat", feature = "mcap", feature = "parquet"))]
@@ -15,7 +15,7 @@ fn kept(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/samples").join(name)
 }
 
-/// Samples of the same three movements.
+/// Files with the same three movements.
 const FILES: [&str; 4] = ["lists.parquet", "robomimic.hdf5", "robosuite.hdf5", "cell.mat"];
 
 /// (cos(k + 2t), sin(k + 1.5t) + 0.3t) at t = 0, 0.05, …, 0.55.
@@ -52,7 +52,7 @@ fn element(kind: u32, bytes: &[u8]) -> Vec<u8> {
     element
 }
 
-/// A string of MATLAB, or any other of its objects, has no size and holds its numbers elsewhere.
+/// A MATLAB string, or any other MATLAB object, has no size and stores its numbers elsewhere.
 #[test]
 fn objects_of_matlab_are_passed_over() {
     let mut bytes = std::fs::read(kept("cell.mat")).unwrap();
@@ -100,14 +100,14 @@ fn files_cut_off_anywhere_are_refused() {
     }
 }
 
-/// The library would count through a list that it skips, for seconds and without asking for memory.
+/// The library would iterate over a list that it skips, for seconds and without allocating memory.
 #[test]
 fn a_list_longer_than_its_file_is_refused() {
     const MARK: usize = 4;
     let whole = std::fs::read(kept("lists.parquet")).unwrap();
     let (rest, mark) = whole.split_at(whole.len() - MARK);
     let (rest, length) = rest.split_last_chunk::<4>().unwrap();
-    // The description's end, before which a field 100 is put: 2³¹ − 1 truth values, which take no bytes.
+    // A field 100 is inserted before the end of the metadata: 2³¹ − 1 booleans, which take no bytes.
     let (stop, described) = rest.split_last().unwrap();
     let list = [0x09, 0xc8, 0x01, 0xf1, 0xff, 0xff, 0xff, 0xff, 0x07];
     let length = u32::from_le_bytes(*length) + list.len() as u32;
@@ -169,7 +169,7 @@ fn same(found: &Recordings, back: &Recordings, what: &str) {
     }
 }
 
-/// Options that say nothing of a format are told, once for all files of it.
+/// Options without effect in a format are reported once for all files of it.
 #[test]
 fn options_without_effect_are_remarked() {
     let files = Files::new();

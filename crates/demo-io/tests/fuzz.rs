@@ -1,8 +1,8 @@
-//! Damaged files: each reader answers with recordings or an error, within a second and without asking for more memory
-//! than a bound on the file's size.
+//! Damaged files: each reader returns recordings or an error within a second, and allocates no more memory than a bound
+//! that depends on the file's size.
 //!
-//! `DEMO_IO_FUZZ=1000000 cargo test -p demo-io --all-features --test fuzz` tries so many files of every kind;
-//! `DEMO_IO_FUZZ_ONLY=parquet` one kind, `DEMO_IO_FUZZ_FROM=14986` from a seed on.
+//! `DEMO_IO_FUZZ=1000000 cargo test -p demo-io --all-features --test fuzz` tries this many files of every kind;
+//! `DEMO_IO_FUZZ_ONLY=parquet` selects one kind, `DEMO_IO_FUZZ_FROM=14986` starts from a seed.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
@@ -20,10 +20,10 @@ use nalgebra::DMatrix;
 use rand::rngs::StdRng;
 use rand::{Rng as _, RngExt as _, SeedableRng as _};
 
-/// Damaged files of each kind, unless the environment asks for more.
+/// Number of damaged files of each kind, unless the environment variable sets another.
 const FILES: u64 = 150;
 
-/// A whole file and how it is read.
+/// A complete file and its reading options.
 struct Sample {
     name: &'static str,
     content: Vec<u8>,
@@ -47,7 +47,7 @@ fn recordings() -> Recordings {
     Recordings { state: vec![channel("x"), channel("y")], episodes: (0..3).map(episode).collect(), findings: vec![] }
 }
 
-/// A sample of every format that this build reads.
+/// A sample of every format that this build supports.
 fn samples() -> Vec<Sample> {
     let files = Files::new();
     let mut samples = Vec::new();
@@ -128,7 +128,7 @@ fn damaged(content: &[u8], random: &mut StdRng) -> Vec<u8> {
     bytes
 }
 
-/// Peak memory of this process in bytes, where the system tells.
+/// Peak memory of this process in bytes, if the operating system reports it.
 fn peak_memory() -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find(|line| line.starts_with("VmHWM:"))?;
@@ -152,7 +152,7 @@ fn damaged_files_are_read_or_refused() {
         for seed in from..from + count {
             let content = damaged(&sample.content, &mut StdRng::seed_from_u64(seed));
             let path: PathBuf = files.add(sample.name, &content);
-            // Not time on the wall, which is other programs', too.
+            // CPU time, because other programs affect wall-clock time.
             let start = ThreadTime::now();
             let outcome = catch_unwind(AssertUnwindSafe(|| read_with(&path, &sample.options)));
             let taken = start.elapsed();
@@ -184,7 +184,7 @@ fn damaged_files_are_read_or_refused() {
     }
 }
 
-/// In the smallest pieces, a file is what it is whole.
+/// Read in the smallest pieces, a file yields the same as read whole.
 fn in_pieces(path: &Path, options: &ReadOptions, whole: &Result<Recordings, ReadError>, seed: u64) {
     let pieces = pieces_of(Piece::whole(path, false), 1, options, &mut |_| ());
     let joined = pieces.and_then(|pieces| Ok(read_pieces(&pieces, options, &mut |_| ())?.0));
@@ -196,7 +196,7 @@ fn in_pieces(path: &Path, options: &ReadOptions, whole: &Result<Recordings, Read
     assert!(is_same, "{} with seed {seed}: {whole:?}, but {joined:?} in pieces", path.display());
 }
 
-/// What every reader promises.
+/// Invariants that every reader guarantees.
 fn check(found: &Recordings, name: &str, seed: u64) {
     let n = found.state.len();
     assert!(n > 0 && found.episodes.iter().any(|episode| episode.times.len() > 1), "{name} seed {seed}");

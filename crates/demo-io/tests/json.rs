@@ -1,4 +1,4 @@
-//! JSON that others write: movements in one object, in a list, a line each; samples as lists of columns.
+//! Foreign JSON: movements in one object, in a list, or one per line; samples as lists of columns.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
@@ -26,7 +26,7 @@ fn rows(values: &[[f64; 2]]) -> String {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
-    /// However movements of any lengths are put into JSON, the same is read as from our own form.
+    /// Every JSON layout of movements of any lengths yields the same as our own form.
     #[test]
     fn all_forms_hold_the_same(
         movements in proptest::collection::vec(proptest::collection::vec([-9.0..9.0f64, -9.0..9.0f64, -9.0..9.0f64, -9.0..9.0f64], 2..7), 2..5),
@@ -100,7 +100,7 @@ fn lists_that_fit_nothing_are_refused() {
     }
 }
 
-/// Columns are counted as they stand in the file, whatever becomes state.
+/// Column numbers follow the order in the file, whatever becomes state.
 #[test]
 fn contexts_are_named_by_number() {
     let files = Files::new();
@@ -129,7 +129,8 @@ fn contexts_are_named_by_number() {
     }
 }
 
-/// Movements as objects of columns, without stamps: by `--dt` or a step beside them, else refused as a table is.
+/// Movements as objects of columns without stamps are read with `--dt` or a step beside them, and otherwise refused
+/// like a table.
 #[test]
 fn columns_without_stamps_are_movements() {
     let column =
@@ -163,7 +164,7 @@ fn stamps(count: usize) -> String {
     serde_json::to_string(&(0..count).map(|at| 0.5 * at as f64).collect::<Vec<_>>()).unwrap()
 }
 
-/// An array beside the state of the same shape may be its velocities, whatever its name.
+/// An array with the shape of the state may hold its velocities, whatever its name.
 #[test]
 fn arrays_that_may_be_velocities_are_named() {
     let given = ReadOptions { dt: Some(0.5), ..ReadOptions::default() };

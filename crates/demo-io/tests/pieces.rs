@@ -1,4 +1,4 @@
-//! Files that are read in pieces.
+//! Reading files in pieces.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
@@ -21,7 +21,7 @@ fn joined(pieces: &[Piece], options: &ReadOptions) -> Recordings {
     read_pieces(pieces, options, &mut |_| ()).unwrap().0
 }
 
-/// A text of movements, and how to read it.
+/// A text of movements, and its format.
 #[derive(Debug, Clone)]
 #[allow(clippy::struct_excessive_bools, reason = "each is tried with all others")]
 struct Table {
@@ -32,11 +32,11 @@ struct Table {
     header: u8,
     ends: bool,
     decimal_comma: bool,
-    /// Of each movement: how its label looks, and its samples.
+    /// For each movement: the form of its label, and its number of samples.
     movements: Vec<(u8, usize)>,
-    /// What comes before rows, by their number: blank lines, comments, blanks.
+    /// Kinds of lines inserted before rows, by number: blank lines, comments, blanks.
     before: Vec<u8>,
-    /// Whether labels are quoted, with line ends and separators within.
+    /// Whether labels are quoted, with line breaks and separators inside.
     quoted: bool,
     extra: u8,
     nanoseconds: bool,
@@ -55,7 +55,7 @@ fn tables() -> impl Strategy<Value = Table> {
             mark,
             header,
             ends,
-            // What separates cannot be a decimal point too.
+            // A separator cannot also be the decimal point.
             decimal_comma: comma && separator != ",",
             movements,
             before,
@@ -94,7 +94,7 @@ impl Table {
         match self.header {
             0 => {}
             1 => text += &(names + self.end),
-            // Comments end with lines as most have them.
+            // Comments end with the most common line end.
             _ => text.extend(["# made by hand\n# ", &names, "\n"]),
         }
         let mut row = 0;
@@ -112,7 +112,7 @@ impl Table {
                     2 => text += "# a comment, with 'marks'\n",
                     3 if self.header > 0 => text.extend(["   ", self.end]),
                     4 => text.extend([self.end, self.end]),
-                    // Where blanks separate, a mark opens a quotation even in a comment.
+                    // If blanks separate, a quotation mark opens a quotation even in a comment.
                     5 => text += "# a comment, with a \" in it\n",
                     _ => {}
                 }
@@ -139,8 +139,8 @@ impl Table {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(512))]
 
-    /// Whatever a text looks like and however small pieces are: their episodes are those of the file, with their names, stamps, numbers and
-    /// lines; of some pieces, or of one, as well.
+    /// For texts of any form and pieces of any size, the pieces contain the episodes of the file, with the same names, stamps, numbers and
+    /// lines. This also holds for some of the pieces, or a single one.
     #[test]
     fn pieces_are_the_file(table in tables(), most in 1u64..4000) {
         let files = Files::new();
@@ -149,7 +149,7 @@ proptest! {
         let whole = match read_with(&path, &options) {
             Ok(whole) => whole,
             Err(error) => {
-                // What is refused whole is refused when it is cut, or when one of the pieces is read.
+                // An error of the whole file also occurs on cutting, or on reading one of the pieces.
                 let pieces = cut(&path, most, &options);
                 let read = pieces.and_then(|pieces| read_pieces(&pieces, &options, &mut |_| ()));
                 prop_assert_eq!(read.unwrap_err().code(), error.code());
@@ -182,7 +182,7 @@ proptest! {
     }
 }
 
-/// Movements of 20 samples, with a column more.
+/// Movements of 20 samples, with one additional column.
 fn movements(count: usize, column: &str, value: impl Fn(usize, usize) -> String) -> String {
     let mut text = format!("episode,t,x,y,{column}\n");
     for row in 0..20 * count {
@@ -212,12 +212,12 @@ fn what_cannot_be_cut_stays_whole() {
     assert_eq!(pieces("back.csv", &back, &plain), 1);
     assert_eq!(pieces("alone.csv", &alone.join("\n"), &plain), 1);
     assert_eq!(pieces("one.csv", &movements(1, "note", same), &plain), 1);
-    // What a task's label means depends on all of them; a condition's does not.
+    // The meaning of a task's label depends on all labels; that of a condition's label does not.
     let task = |episode: usize, _: usize| format!("task {}", episode / 3);
     assert_eq!(pieces("tasks.csv", &movements(6, "task", task), &plain), 1);
     assert!(pieces("task.csv", &movements(6, "task", same), &plain) >= 6);
     assert!(pieces("conditions.csv", &movements(6, "condition", task), &plain) >= 6);
-    // The unit of stamps is that of the first, which is far away.
+    // The unit of stamps is determined by the first one, which is far away.
     let stamps = text.lines().enumerate().map(|(at, row)| {
         let fields: Vec<&str> = row.split(',').collect();
         if (1..=100).contains(&at) { format!("{},,{}", fields[0], fields[2..].join(",")) } else { row.to_owned() }
@@ -225,7 +225,7 @@ fn what_cannot_be_cut_stays_whole() {
     let drop = ReadOptions { nan: demo_io::Nan::Drop, ..plain.clone() };
     assert_eq!(pieces("stamps.csv", &stamps.collect::<Vec<_>>().join("\n"), &drop), 1);
     let columns = ReadOptions { samples_are: Some(SamplesAre::Columns), dt: Some(0.1), ..plain.clone() };
-    // A mark in a comment turns outside and inside of quotation marks round, for blanks.
+    // A quotation mark in a comment swaps the inside and outside of quotations, for blanks.
     let marked: Vec<String> =
         text.lines().skip(1).map(|row| format!("\"take  {}\" {}", &row[..1], row[2..].replace(',', " "))).collect();
     let text = format!("# 5\" pipe\nepisode t x y note\n{}\n", marked.join("\n"));
@@ -244,7 +244,8 @@ fn what_cannot_be_cut_stays_whole() {
     assert_eq!(pieces, [Piece::whole(files.path(), false)]);
 }
 
-/// Columns, their unit and what words they hold are those of the file; what never changes in a piece is a channel if it changes elsewhere.
+/// Columns, their units and the words in them are those of the file. A channel that is constant in one piece remains a channel if it
+/// changes in another.
 #[test]
 fn pieces_are_read_as_the_file_is() {
     let files = Files::new();
@@ -259,7 +260,7 @@ fn pieces_are_read_as_the_file_is() {
     assert_eq!(names(&joined(&pieces[..1], &plain)), ["x", "y"]);
     let channels: Vec<String> = names(&whole).into_iter().map(str::to_owned).collect();
     assert_eq!(read_further(&pieces[0], &channels, &plain, &mut |_| ()).unwrap().episodes[0], whole.episodes[0]);
-    // A stamp of the last movement alone would be in nanoseconds.
+    // Judged alone, a stamp of the last movement would be in nanoseconds.
     let path =
         files.add("b.csv", movements(6, "note", |_, _| "a".to_owned()).replace("\n5,", "\n5,170000000000000000"));
     let pieces = cut(&path, 500, &plain).unwrap();
@@ -274,7 +275,7 @@ fn pieces_are_read_as_the_file_is() {
     assert_eq!(error.to_string(), read_with(&path, &plain).unwrap_err().to_string());
 }
 
-/// What is wrong within a piece is said as it is of the file: with its line.
+/// An error within a piece names the line of the file.
 #[test]
 fn errors_name_the_line_of_the_file() {
     let files = Files::new();
@@ -318,7 +319,7 @@ fn a_file_that_has_changed_is_noticed() {
     };
     std::fs::write(&path, format!("{text}4,0,1,2,a\n")).unwrap();
     refused();
-    // Of the same size.
+    // The file keeps its size.
     std::fs::write(&path, text.replace("0.05", "0.06")).unwrap();
     let file = std::fs::File::options().write(true).open(&path).unwrap();
     file.set_modified(std::time::SystemTime::now() + std::time::Duration::from_secs(9)).unwrap();
@@ -330,7 +331,7 @@ fn a_file_that_has_changed_is_noticed() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
-    /// Lines with an episode each, with names or numbered, between blank ones.
+    /// Lines with one episode each, named or numbered, between blank lines.
     #[test]
     fn pieces_of_json_lines_are_the_file(
         lines in prop::collection::vec((2usize..12, any::<bool>(), 0u8..8), 2..12),

@@ -1,4 +1,4 @@
-//! Text with separators, as people and programs write it.
+//! Text with separators, in the forms that people and programs write.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
@@ -59,7 +59,7 @@ fn other_texts_are_no_recordings() {
     {
         refused(name, text, &plain(), "NotThisFormat", &["not a recording"]);
     }
-    // A table may have any name.
+    // A table may have any file name.
     let table = two_movements(",", "\n", ".");
     assert_eq!(lengths(&parsed("movements.log", table, &plain()).unwrap()), [6, 6]);
 }
@@ -70,7 +70,7 @@ fn blanks_in_front_and_behind_are_no_fields() {
     assert_eq!(lengths(&parsed("a.dat", text, &plain()).unwrap()), [6, 6]);
 }
 
-/// Among quoted fields with commas between them, the stamp is the first.
+/// Quoted fields with decimal commas and commas between them: the first fault is the stamp.
 #[test]
 fn a_decimal_comma_of_a_stamp_is_named() {
     let text = "t,x\n\"0,0\",\"0,5\"\n\"0,05\",\"0,4\"\n\"0,1\",\"0,3\"\n";
@@ -153,7 +153,7 @@ fn what_is_missing_is_dropped_or_filled() {
     refused("a.csv", at_end, &ReadOptions { nan: Nan::Fill, ..plain() }, "NotFinite", &["line 4"]);
 }
 
-/// A pose as rosbag's exporter writes it: x, y, z of the place and of the quaternion, stamps in whole nanoseconds.
+/// A pose in the form of rosbag's exporter: x, y, z of the position and of the quaternion, stamps in integer nanoseconds.
 #[test]
 fn exported_poses_are_read_by_the_numbers_of_their_columns() {
     let text = "rosbagTimestamp,x,y,z,x,y,z,w\n\
@@ -177,7 +177,7 @@ fn stamps_are_sorted_cut_and_kept_once() {
     assert!(said(&found).contains("a stamp occurs twice"));
 }
 
-/// Takes one after the other, each with a clock of its own that begins at 0.
+/// Takes in sequence, each with its own clock that begins at 0.
 #[test]
 fn stamps_that_go_back_begin_a_movement_if_gaps_do() {
     let text = "t,x\n0,0\n1,1\n2,3\n0,5\n1,5.5\n0.5,7\n1.5,8\n";
@@ -187,7 +187,7 @@ fn stamps_that_go_back_begin_a_movement_if_gaps_do() {
     assert_eq!(found.episodes[2].times.stamps()[..], [0.0, 1.0]);
 }
 
-/// What rounding makes of stamps far from the first one must not occur twice either.
+/// Stamps far from the first one that rounding makes equal must not occur twice either.
 #[test]
 fn stamps_ascend_after_they_begin_at_zero() {
     let text = "t,x,y\n0,1,2\n1e-30,2,3\n0.02,3,5\n-0.01,4,5\n";
@@ -240,7 +240,7 @@ fn what_is_something_else_is_said() {
 }
 
 proptest! {
-    /// Every f64 that is written in decimals is read to the same bits, from text with any separator.
+    /// Every f64 written in decimals is read back to the same bits, from text with any separator.
     #[test]
     fn numbers_keep_their_bits(values in proptest::collection::vec(proptest::num::f64::NORMAL, 4..40), tabs in any::<bool>()) {
         let separator = if tabs { "\t" } else { "," };
@@ -255,7 +255,7 @@ proptest! {
         prop_assert_eq!(bits, expected);
     }
 
-    /// Rows of several movements in any order give each movement its rows in order.
+    /// Rows of interleaved movements keep their order within each movement.
     #[test]
     fn interleaved_movements_are_told_apart(labels in proptest::collection::vec(0u8..4, 2..60)) {
         let mut text = "episode,t,x\n".to_owned();
@@ -270,7 +270,7 @@ proptest! {
                 None => expected.push((label, vec![value])),
             }
         }
-        // One sample is no movement, but nothing is left out here.
+        // One sample is no movement, but this test drops nothing.
         let moves = expected.iter().any(|(_, values)| values.len() > 1);
         match parsed("a.csv", text, &ReadOptions { state: vec!["x".to_owned()], ..plain() }) {
             Ok(found) => {
@@ -295,14 +295,15 @@ proptest! {
 fn names_that_hold_line_ends_leave_messages_their_lines() {
     let table = |middle: &str| format!("t,\"x\ny\",z\n0,1,2\n0.1,{middle},3\n0.2,1,4\n");
     refused("a.csv", table("NaN").replace("0.2,1", "0.2,2"), &plain(), "NotFinite", &["'x y' is not a finite number"]);
-    // A column that never changes is noted.
+    // A column that never changes is reported.
     let found = parsed("a.csv", table("1"), &plain()).unwrap();
     assert!(
         found.findings[0].what.contains("x y") && found.findings.iter().all(|finding| !finding.what.contains('\n'))
     );
 }
 
-/// A column that names the constraint, by name or by number, may change within an episode; a task says so only if it is asked for.
+/// A column with the constraint's name, given by name or by number, may change within an episode. A task column counts only on
+/// request.
 #[test]
 fn names_of_constraints_may_change() {
     let table = |column: &str| {
@@ -338,7 +339,7 @@ fn a_list_of_names_has_one_a_sample() {
     refused("a.jsonl", line(r#"["a", "b"]"#), &plain(), "Lengths", &["'constraint'", "2", "3"]);
 }
 
-/// Stamps as spreadsheets and ROS 1 write them, and units that no name tells.
+/// Stamps in the forms of spreadsheets and ROS 1, and units that no name states.
 #[test]
 fn stamps_of_two_columns_dates_and_units_are_read() {
     let step = |text: &str, options: &ReadOptions| parsed("a.csv", text, options).unwrap().time_step();
@@ -357,14 +358,14 @@ fn stamps_of_two_columns_dates_and_units_are_read() {
         let unit = serde_json::from_str(&format!("\"{unit}\"")).unwrap();
         let asked = ReadOptions { time_unit: Some(unit), ..ReadOptions::default() };
         assert_eq!(step("t,x\n0,1\n20,2\n40,4\n", &asked), seconds);
-        // What a text says of itself is known.
+        // A unit that the text itself states takes precedence.
         assert_eq!(step(german, &ReadOptions { time: by.time.clone(), ..asked.clone() }), 0.05);
         let line = r#"{"times": [0, 20, 40], "state": [[1], [2], [4]]}"#;
         assert_eq!(parsed("a.jsonl", line, &asked).unwrap().time_step(), seconds);
     }
 }
 
-/// A list of episodes, of samples or of numbers, in one line or many, whatever the file is called.
+/// A list of episodes, samples or numbers, on one line or many, in a file of any name.
 #[test]
 fn json_that_is_one_list_is_read() {
     let every = ReadOptions { dt: Some(0.5), ..ReadOptions::default() };
@@ -441,7 +442,7 @@ fn lines_may_be_channels() {
     refused("a.txt", "1 3 5\n2 a 6\n", &every, "NotANumber", &["'a'", "line 2, column 1"]);
 }
 
-/// Files joined without care have a header among their rows, near or far from the first.
+/// Files joined carelessly repeat a header among their rows, near the first row or far from it.
 #[test]
 fn a_repeated_header_is_named_with_its_line() {
     for (header, rows) in [("t,x,y", 5), ("t,x,y", 100), ("episode, t, x, y", 100), ("take,constraint,t,x,y", 100)] {

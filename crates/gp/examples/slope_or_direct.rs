@@ -1,4 +1,4 @@
-//! Learns one policy from constrained and from free movements and prints which Gaussian process the data support.
+//! Learns one policy from constrained and from free movements, and prints which Gaussian process the data support.
 
 #![allow(clippy::print_stdout, reason = "a program")]
 

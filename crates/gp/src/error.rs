@@ -1,35 +1,35 @@
 use thiserror::Error;
 
-/// Why nothing could be learnt. All numbers count from 0.
+/// Reasons why nothing was learnt. All numbers count from 0.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum GpError {
-    /// A parameter lies outside its range.
+    /// A parameter is outside its range.
     #[error("{name} is {value}: it must {requirement}")]
     Parameter {
         /// Name of the field.
         name: &'static str,
-        /// The value given.
+        /// The given value.
         value: f64,
-        /// What the value must satisfy.
+        /// The condition on the value.
         requirement: &'static str,
     },
-    /// Lists that belong together differ in length.
+    /// Lists that belong together have different lengths.
     #[error("there are {found} {what} for {expected} rows; give one each")]
     Lengths {
-        /// What is too many or too few.
+        /// Name of the list.
         what: &'static str,
-        /// How many there are.
+        /// Its length.
         found: usize,
-        /// How many rows there are.
+        /// Number of rows.
         expected: usize,
     },
-    /// A number is NaN or infinite, or a variance negative.
+    /// A number is NaN or infinite, or a variance is negative.
     #[error("row {row}: a {what} of {value} cannot be; leave the row out")]
     Value {
         /// State, velocity or variance.
         what: &'static str,
-        /// The row.
+        /// Index of the row.
         row: usize,
         /// The value.
         value: f64,
@@ -42,7 +42,7 @@ pub enum GpError {
         /// The first trajectory without velocities.
         trajectory: usize,
     },
-    /// Squares of the data leave the range of f64.
+    /// Squares of the data exceed the range of f64.
     #[error("the square of a {what} overflows, or all of them underflow; use other units")]
     Overflow {
         /// Speed or distance.
@@ -54,28 +54,28 @@ pub enum GpError {
     /// Every row is at the same state.
     #[error("all rows are at one state; movements must pass through several")]
     OneState,
-    /// Movements too short for what is asked.
+    /// All movements are too short for the request.
     #[error(
         "no movement has {needed} samples, the longest has {longest}; record longer movements or more samples a second"
     )]
     ShortMovements {
-        /// Samples of the longest.
+        /// Number of samples of the longest movement.
         longest: usize,
-        /// Samples needed in at least one.
+        /// Number of samples that at least one movement needs.
         needed: usize,
     },
-    /// Too few groups for leaving one out.
+    /// There are too few groups to leave one out.
     #[error("only {found} trajectories have rows that can be used, at least 3 are needed; record more")]
     TooFewTrajectories {
-        /// How many trajectories, or blocks of time, have rows.
+        /// Number of trajectories, or blocks of time, that have rows.
         found: usize,
     },
-    /// Too few rows for a model.
+    /// There are too few rows for a model.
     #[error("only {found} rows can be used, at least {needed} are needed; record more or less noisily")]
     TooFewRows {
-        /// How many rows are left.
+        /// Number of remaining rows.
         found: usize,
-        /// Dimension plus two.
+        /// Minimum: the dimension plus two.
         needed: usize,
     },
     /// No family's covariance has a Cholesky factor.
@@ -84,13 +84,13 @@ pub enum GpError {
     /// Trajectories cannot be smoothed or fused.
     #[error("the recordings cannot be smoothed: {reason}")]
     Cleaning {
-        /// The smoother's own words.
+        /// The smoother's explanation.
         reason: String,
     },
-    /// The stored data are not a model.
+    /// The stored data are not a valid model.
     #[error("the stored model cannot be used: {reason}")]
     Stored {
-        /// What is wrong with it.
+        /// Description of the fault.
         reason: String,
     },
 }

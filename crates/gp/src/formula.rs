@@ -1,4 +1,4 @@
-//! Posterior means written out, for programs that evaluate them without this crate.
+//! Posterior means as explicit formulas, for programs that evaluate them without this crate.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -11,9 +11,9 @@ use crate::{DirectFit, SlopeFit};
 /// Scaled coordinates z = (x − mean) / spread, and the learnt states in them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ScaledStates<'a> {
-    /// (n).
+    /// Mean of the states, (n).
     pub mean: &'a [f64],
-    /// One for all axes.
+    /// One scale for all axes.
     pub spread: f64,
     /// Unit of speed, in units of the state per second.
     pub speed: f64,
@@ -28,9 +28,9 @@ pub struct SlopeFormula<'a> {
     pub scaled: ScaledStates<'a>,
     /// v = α n, (n, M).
     pub directions: DMatrix<f64>,
-    /// Terms with an amplitude above 0.
+    /// Terms with positive amplitudes.
     pub terms: Vec<Term>,
-    /// g and h, the same terms with few exponentials.
+    /// g and h of the same terms, evaluated with few exponentials.
     pub falling: &'a Falling,
     /// c, (n).
     pub constant: DVector<f64>,
@@ -40,23 +40,23 @@ pub struct SlopeFormula<'a> {
     pub has_potential: bool,
 }
 
-/// (R4): û = speed Σ k(z, z') A, where k is the sum of terms and of the trend's.
+/// (R4): û = speed Σ k(z, z') A, where k is the sum of the terms and of the trend's covariance.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DirectFormula<'a> {
     /// Coordinates and learnt states.
     pub scaled: ScaledStates<'a>,
     /// A, (n, M).
     pub weights: &'a DMatrix<f64>,
-    /// Terms with an amplitude above 0.
+    /// Terms with positive amplitudes.
     pub terms: Vec<Term>,
-    /// Their sum with few exponentials.
+    /// The sum of the terms, evaluated with few exponentials.
     pub falling: &'a Falling,
     /// Factors of 1, of zᵀz' and of its square.
     pub trend: [f64; 3],
 }
 
 impl SlopeFit {
-    /// The policy, written out.
+    /// The policy as an explicit formula.
     pub fn formula(&self) -> SlopeFormula<'_> {
         let expansion = self.model.expansion();
         SlopeFormula {
@@ -64,7 +64,7 @@ impl SlopeFit {
             directions: expansion.weighted(),
             terms: Term::of_slopes(&expansion.blocks, &expansion.amplitudes, expansion.dim()),
             falling: &expansion.falling,
-            // −0 becomes 0: without a trend nothing is added.
+            // Converts −0 to 0: without a trend nothing is added.
             constant: expansion.constant.add_scalar(0.0),
             matrix: expansion.matrix.add_scalar(0.0),
             has_potential: self.potential().is_some(),
@@ -73,7 +73,7 @@ impl SlopeFit {
 }
 
 impl DirectFit {
-    /// The policy, written out.
+    /// The policy as an explicit formula.
     pub fn formula(&self) -> DirectFormula<'_> {
         let (model, dim) = (&self.model, self.model.z.nrows());
         DirectFormula {

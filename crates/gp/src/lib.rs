@@ -1,12 +1,12 @@
-//! Gaussian processes that learn a policy from demonstrations, with error bars and a report on how far to trust it.
+//! Gaussian processes that learn a policy from demonstrations, with error bars and a report on its reliability.
 //!
-//! | item | what it does |
+//! | item | function |
 //! |---|---|
 //! | [`SlopeGp`] | learns a potential from slopes along the observed motion: for unknown constraints that vary |
 //! | [`DirectGp`] | learns the velocities: for unconstrained motion |
 //! | [`AutoGp`] | fits both and returns the one that the data support |
 //! | [`FrontEnd`] | turns demonstrations into [`Rows`] of states and velocities |
-//! | [`ConstraintEstimates`] | the constraints that acted, once the policy is known |
+//! | [`ConstraintEstimates`] | estimates the constraints that acted, once the policy is known |
 //! | [`TrustReport`] | warnings and numbers about a [`SlopeFit`] |
 //!
 //! ```
@@ -50,15 +50,15 @@
 //! - **The same constraint in every demonstration** makes the velocity a function of the state, like an unconstrained
 //!   policy. The data cannot distinguish the two: [`Hypothesis::Ambiguous`], and [`TrustReport::least_seen`] names the
 //!   direction that never moved.
-//! - **Constraints that push** (A u = b, b ≠ 0) with A or b changing from sample to sample, or that project obliquely.
-//!   While A and b are constant, directions in which velocities differ are learnt from ([`TrustReport::push`]); so they may be for a
-//!   robot's hand ([`Rows::with_task_spaces`]).
-//! - **Motion that depends on more than the state** (time, a moving target) is [`Hypothesis::Unexplained`]. What is constant during
-//!   a movement, a goal or a load, can be context ([`Rows::with_context`]).
-//! - **Corridors**: where all movements follow one narrow path, nothing tests the policy across it.
+//! - **Constraints that push** (A u = b, b ≠ 0) with A or b changing from sample to sample, or that project obliquely. While A and b are
+//!   constant, the model learns from the directions in which velocities differ ([`TrustReport::push`]). This also applies to constraints on
+//!   a robot's hand ([`Rows::with_task_spaces`]).
+//! - **Motion that depends on more than the state** (time, a moving target) is [`Hypothesis::Unexplained`]. A quantity that is constant
+//!   during a movement, such as a goal or a load, can be context ([`Rows::with_context`]).
+//! - **Corridors**: if all movements follow one narrow path, nothing tests the policy across it.
 //! - **Kinks in many dimensions** are learnt slowly; the held-out R² is then low and [`TrustReport::warnings`] says so.
-//! - **More than 1,500 rows** are thinned, since time grows with their cube ([`SlopeGp::max_rows`]). With [`SlopeGp::inducing_rows`], up to
-//!   64 times as many rows are learnt from as well, if that predicts left-out movements better.
+//! - **More than 1,500 rows** are thinned, because time grows with their cube ([`SlopeGp::max_rows`]). With [`SlopeGp::inducing_rows`], up
+//!   to 64 times as many rows are also used, if that predicts left-out movements better.
 //! - [`GpError`]: no motion, fewer than three usable trajectories, or too few rows.
 
 mod constraint_estimate;

@@ -1,4 +1,4 @@
-//! Some rows of a model that already show where it knows enough.
+//! A subset of a model's rows that suffices to show that many states have enough support.
 
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -12,25 +12,25 @@ use crate::kernel::panel::Panel;
 use crate::kernel::triangle::InverseOfLower;
 use crate::kernel::whitening::Whitening;
 
-/// One of so many rows is taken, and at most [`MOST`].
+/// The subset contains one in this many rows, and at most [`MOST`].
 const ONE_OF: usize = 4;
 const MOST: usize = 96;
-/// Share of a covariance's mean diagonal that is added, so that rounding never makes these rows say more than all do.
+/// Share of a covariance's mean diagonal to add, so that rounding never makes the subset explain more than all rows do.
 const CAUTION: f64 = 1e-8;
-/// A triangle whose diagonal falls below this share of its largest entry is not inverted.
+/// A triangle is not inverted if its diagonal falls below this share of its largest entry.
 const SINGULAR: f64 = 1e-7;
-/// Share of a prior variance by which some rows must explain more of it than is needed, whatever rounding does.
+/// Share of a prior variance by which the subset must explain more than required, as a margin for rounding.
 const MARGIN: f64 = 1e-3;
-/// After so many states, the outline stays in use if it decided at least one in [`ONE_OF`].
+/// After this many states, the outline stays in use if it decided at least one in [`ONE_OF`].
 const TRIED: usize = 256;
 
-/// A part P of a model: rows S and the factor of G_SS, where bᵀG⁻¹b is what all rows explain of a variance and b its covariances with them. G
-/// is their covariance with noise (S6), or of inducing rows L(TᵀT)⁻¹Lᵀ of (S37). b_SᵀG_SS⁻¹b_S ≤ bᵀG⁻¹b for every S, as for every positive
-/// matrix.
+/// A part P of a model: rows S and the factor of G_SS. All rows explain bᵀG⁻¹b of a variance, where b are its covariances with them. G is
+/// the rows' covariance with noise (S6), or L(TᵀT)⁻¹Lᵀ of (S37) for inducing rows. b_SᵀG_SS⁻¹b_S ≤ bᵀG⁻¹b holds for every S, as for every
+/// positive matrix.
 #[derive(Debug)]
 pub(crate) struct Outline<P> {
     part: OnceLock<Option<(P, InverseOfLower)>>,
-    /// States that were tried, and those of them that have enough support by these rows.
+    /// Number of states that were tried, and of those with enough support from these rows.
     tried: AtomicUsize,
     told: AtomicUsize,
 }
@@ -41,7 +41,7 @@ impl<P> Default for Outline<P> {
     }
 }
 
-/// What was found out is found out again.
+/// A clone starts empty and recomputes its part.
 impl<P> Clone for Outline<P> {
     fn clone(&self) -> Self {
         Self::default()
@@ -49,7 +49,8 @@ impl<P> Clone for Outline<P> {
 }
 
 impl<P> Outline<P> {
-    /// The part of the model of `rows` rows, which `part` makes of some; none if no rows can be taken apart, or if it told too little so far.
+    /// The part that `part` makes of some of the model's `rows` rows; `None` if no rows can be separated, or if the part has decided too
+    /// few states so far.
     pub(crate) fn part(
         &self,
         rows: usize,
@@ -97,8 +98,8 @@ impl<P> Outline<P> {
         self.part.get_or_init(new).as_ref()
     }
 
-    /// Which states have the share `least` of their prior variances explained by these rows: covariances `b`, (S, k c), of c components a
-    /// state, `unit` being what squares of theirs are multiplied by. Infinite numbers tell nothing.
+    /// Whether these rows explain the share `least` of the prior variance of each state. `b` are covariances (S, k c) of c components per
+    /// state; `unit` multiplies their squares. An infinite variance is never counted as explained.
     pub(crate) fn told(
         &self,
         factor: &InverseOfLower,

@@ -2,17 +2,16 @@ use motion::Certainty;
 use nalgebra::{DMatrix, DMatrixView, DVectorViewMut};
 use rayon::prelude::*;
 
-/// Share of a prior variance that the rows have taken away, from 0 to 1; 0 where numbers overflow, so far from the rows
-/// that they say nothing.
+/// Share of the prior variance that the rows explain, from 0 to 1; 0 if numbers overflow, so far from the rows that they explain nothing.
 fn support(posterior: f64, prior: f64) -> f64 {
     let left = posterior / prior;
     if left.is_nan() { 0.0 } else { 1.0 - left.clamp(0.0, 1.0) }
 }
 
-/// States whose actions are worth handing to a thread.
+/// Number of states whose actions are worth a task of their own.
 const STATES_A_TASK: usize = 32;
 
-/// Actions (n, N) at states with their contexts (n + p, N), which `action_into` writes one by one, in parallel.
+/// Actions (n, N) at states with their contexts (n + p, N), computed in parallel; `action_into` writes one at a time.
 pub(crate) fn each_action(
     moving: usize,
     states: DMatrixView<'_, f64>,
@@ -32,21 +31,21 @@ pub(crate) fn each_action(
     actions
 }
 
-/// Columns of covariances that are whitened together: a panel of 1,500 rows then stays in the processor's second cache.
+/// Number of columns of covariances that are whitened together: a panel of 1,500 rows then fits in the processor's level 2 cache.
 const COLUMNS: usize = 64;
 
 /// Variances of an action at some states, in squared units of the state per second.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Variances {
-    /// Before anything is known, (c, N).
+    /// Prior variances, (c, N).
     pub(crate) prior: DMatrix<f64>,
-    /// Given the rows, (c, N); rounding may leave it below 0.
+    /// Posterior variances given the rows, (c, N); rounding may make them negative.
     pub(crate) posterior: DMatrix<f64>,
 }
 
 impl Variances {
-    /// Of `components` at states (n + p, N), in blocks in parallel. `fill` writes prior and posterior of a block of states, for
-    /// which it whitens as many columns a state.
+    /// Variances of `components` at states (n + p, N), computed in parallel blocks. `fill` writes the prior and posterior of a block of
+    /// states, for which it whitens as many columns per state.
     pub(crate) fn of(
         states: DMatrixView<'_, f64>,
         components: usize,
@@ -57,7 +56,7 @@ impl Variances {
         let together = (COLUMNS / components).max(1);
         let size = together * components;
         if count <= together {
-            // Without a trip to another thread.
+            // Avoids a switch to another thread.
             fill(states, prior.as_mut_slice(), posterior.as_mut_slice());
             return Variances { prior, posterior };
         }
@@ -68,8 +67,8 @@ impl Variances {
         Variances { prior, posterior }
     }
 
-    /// What [`LearntPolicy::certainty`](motion::LearntPolicy::certainty) says, deviations being `factor` times as wide, squared;
-    /// of `moving` of `dim` components.
+    /// The result of [`LearntPolicy::certainty`](motion::LearntPolicy::certainty) for variances `factor` times as large, where only
+    /// `moving` of `dim` components vary.
     pub(crate) fn certainty(&self, factor: f64, moving: usize, dim: usize) -> Certainty {
         let columns = self.posterior.column_iter().zip(self.prior.column_iter());
         let support = columns.map(|(posterior, prior)| support(posterior.sum(), prior.sum())).collect();
@@ -81,8 +80,8 @@ impl Variances {
     }
 }
 
-/// Whether states (n + p, N) have lost at least this share of their prior variance, `least`: by `some`, which answers for a block of states
-/// where few rows suffice, else by `all`, which gives the variances.
+/// Whether states (n + p, N) have lost at least the share `least` of their prior variance. `some` decides for a block of states if few rows
+/// suffice; otherwise `all` provides the variances.
 pub(crate) fn supported(
     states: DMatrixView<'_, f64>,
     components: usize,
@@ -111,7 +110,7 @@ pub(crate) fn supported(
     supported
 }
 
-/// The deviations at the one state that was asked for.
+/// Writes the deviations at the one requested state.
 pub(crate) fn only_deviation_into(certainty: &Certainty, mut deviation: DVectorViewMut<'_, f64>) -> bool {
     let Some(deviations) = &certainty.deviations else { return false };
     deviation.copy_from(&deviations.column(0));

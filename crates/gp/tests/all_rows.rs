@@ -1,4 +1,4 @@
-//! Models of all rows through inducing rows (S34)–(S37): what more data bring.
+//! Models of all rows through inducing rows (S34)–(S37): the gain from more data.
 
 use crate::drawn;
 use crate::drawn::many::{Set, set, sinusoid, wells};
@@ -11,7 +11,8 @@ fn gp(inducing_rows: usize) -> SlopeGp {
     SlopeGp { max_rows: 200, hyper_rows: 150, inducing_rows, ..SlopeGp::default() }
 }
 
-/// Without noise a hundred rows say nearly all; with it, more of them say more, and all of them the most.
+/// Without noise a hundred rows contain nearly all information. With noise, more rows improve the model, and all rows improve it
+/// most.
 #[test]
 fn more_rows_are_never_worse() {
     let learnt = |samples: usize, inducing: usize| {
@@ -26,12 +27,12 @@ fn more_rows_are_never_worse() {
     assert!(all < 1.1 * many, "{all} {many}");
 }
 
-/// Of so many movements with noise all rows are used, through inducing ones.
+/// A data set with noise and so many movements that all rows are used through inducing rows.
 fn noisy() -> Set {
     set(wells, 3, (200, 60), 0.05, 5)
 }
 
-/// The report says what a policy was learnt from; where nothing is thinned, inducing rows change nothing.
+/// The report states what a policy was learnt from; if nothing is thinned, inducing rows change nothing.
 #[test]
 fn inducing_rows_are_said_and_only_where_rows_are_thinned() {
     let many = noisy();
@@ -47,7 +48,8 @@ fn inducing_rows_are_said_and_only_where_rows_are_thinned() {
     assert_eq!(with.action(few.rows.states().column(3)), without.action(few.rows.states().column(3)));
 }
 
-/// Of few movements without noise more exact rows say more than all through inducing ones; few noisy rows are all exact.
+/// For a few movements without noise, more exact rows predict better than all rows through inducing rows; a few noisy rows are all
+/// exact.
 #[test]
 fn more_rows_are_exact_where_inducing_ones_predict_worse() {
     let clean = set(wells, 3, (30, 60), 0.0, 5);
@@ -61,7 +63,7 @@ fn more_rows_are_exact_where_inducing_ones_predict_worse() {
     assert!(nupe(fit.policy(), &noisy.fresh) < nupe(thinned.policy(), &noisy.fresh));
 }
 
-/// Stored and read back: the same policy and uncertainty to the last bit. A triangle of another size is refused.
+/// A stored model is read back with the same policy and uncertainty to the last bit. A triangle of another size is refused.
 #[test]
 fn a_model_of_inducing_rows_is_stored() {
     let set = noisy();
@@ -80,7 +82,8 @@ fn a_model_of_inducing_rows_is_stored() {
     assert!(refused.contains("triangle"), "{refused}");
 }
 
-/// Some rows tell of most states whether all support them, and the answer is that of all, with and without noise and inducing rows.
+/// For most states a subset of the rows decides whether all rows support them, with the same answer, with and without noise and
+/// inducing rows.
 #[test]
 fn support_is_told_as_by_variances() {
     let (mut induced, mut answers) = (0, [0; 2]);
@@ -105,7 +108,7 @@ fn support_is_told_as_by_variances() {
     assert!(answers.iter().all(|&count| count > 1000), "{answers:?}");
 }
 
-/// Uncertainty is small where movements were, grows to the prior's away from them, and is never negative.
+/// Uncertainty is small near the movements, grows to the prior's away from them, and is never negative.
 #[test]
 fn uncertainty_of_inducing_rows_grows_away_from_them() {
     let set = noisy();

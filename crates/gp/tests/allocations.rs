@@ -1,4 +1,4 @@
-//! Policies and potentials that were learnt allocate nothing when they are asked.
+//! Learnt policies and potentials do not allocate when they are evaluated.
 
 #![allow(clippy::unwrap_used)] // A panic is how a test fails.
 
@@ -10,7 +10,7 @@ use gp::{AutoGp, CurlTest, DirectGp, SlopeGp};
 use motion::{LearntPolicy, Policy, Potential as _};
 use nalgebra::DVector;
 
-/// How often this thread allocates in `work`.
+/// Number of allocations of this thread in `work`.
 fn allocations(work: impl FnOnce()) -> u64 {
     allocation_counter::measure(work).count_total
 }
@@ -18,7 +18,7 @@ fn allocations(work: impl FnOnce()) -> u64 {
 #[test]
 fn actions_and_potentials_allocate_nothing() {
     for dim in [1, 2, 6] {
-        // More rows than one chunk of them.
+        // More rows than fit in one chunk.
         let given = rows(dim, (6, 15), descent, &mut rng(1));
         let slope = SlopeGp { curl_test: CurlTest::AssumePotential, ..SlopeGp::default() };
         let learner = AutoGp { slope, direct: DirectGp::default(), ..AutoGp::default() };

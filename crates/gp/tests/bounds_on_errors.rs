@@ -1,4 +1,4 @@
-//! Errors under pushes, in noise and in mixed units beside the bounds set for them: a table of medians and worst cases.
+//! Errors under pushes, with noise and in mixed units, compared with upper bounds: a table of medians and worst cases.
 
 #![allow(clippy::print_stdout, reason = "it prints what it measures")]
 
@@ -12,7 +12,7 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
 const SEEDS: std::ops::RangeInclusive<u64> = 1..=5;
-/// Rows that are learnt from.
+/// Number of rows learnt from.
 const ROWS: usize = 600;
 
 fn slope(push_test: PushTest) -> SlopeGp {
@@ -29,12 +29,12 @@ fn rows_of(movements: &Demonstrations) -> Rows {
     FrontEnd::of_velocities(movements).rows(movements).unwrap()
 }
 
-/// nUPE of what is learnt under a push, with noise, as shares of the policy's size.
+/// nUPE of a policy learnt under a push and with noise, both as shares of the policy's size.
 fn learnt(system: &System, (push, noise): (f64, f64), push_test: PushTest, seed: u64) -> f64 {
     error(system, &fit(&rows_of(&system.movements(push, noise, seed)), push_test, seed), seed)
 }
 
-/// A policy in units that are so many times the right ones, in the right ones.
+/// Converts a policy in units that are a multiple of the right ones to the right ones.
 struct InRightUnits {
     fit: AutoFit,
     factors: DVector<f64>,
@@ -51,7 +51,7 @@ impl Policy for InRightUnits {
     }
 }
 
-/// nUPE, in the right units, of what is learnt where these are to be found: axis 1 was recorded in so many times too small a one.
+/// nUPE, in the right units, of a policy learnt with units to be found: axis 1 was recorded in a unit too small by `factor`.
 fn in_units(system: &System, factor: f64, noise: f64, seed: u64) -> f64 {
     let right = system.movements(0.0, noise, seed);
     let with = |factors: &DVector<f64>| {
@@ -75,9 +75,9 @@ fn in_units(system: &System, factor: f64, noise: f64, seed: u64) -> f64 {
     error(system, &InRightUnits { fit, factors }, seed)
 }
 
-/// The table, which this fills line by line.
+/// The table, which is filled line by line.
 struct Table {
-    /// Lines over their bounds.
+    /// Lines that exceed their bounds.
     over: Vec<String>,
 }
 
@@ -87,7 +87,7 @@ impl Table {
         Table { over: Vec::new() }
     }
 
-    /// A value of every seed, and the most that their median may be.
+    /// Adds a line with a value for each seed, and an upper bound on their median.
     fn line(&mut self, name: &str, most: f64, of: impl Fn(u64) -> f64) -> Vec<f64> {
         let values: Vec<f64> = SEEDS.map(of).collect();
         let mut sorted = values.clone();
@@ -101,7 +101,7 @@ impl Table {
         values
     }
 
-    /// The same of shares of other values, one of every seed.
+    /// Adds a line of values as shares of other values, one for each seed.
     fn shares(&mut self, name: &str, most: f64, others: &[f64], of: impl Fn(u64) -> f64) {
         self.line(name, most, |seed| of(seed) / others[(seed - SEEDS.start()) as usize]);
     }

@@ -1,4 +1,4 @@
-//! Constraints that are found once the policy is known.
+//! Estimation of constraints with a known policy.
 
 #![allow(clippy::print_stdout, reason = "the slow test prints what it measures")]
 
@@ -10,17 +10,17 @@ use nalgebra::{DMatrix, DVector, DVectorView, DVectorViewMut};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-/// How many true stretches there are, and how many of them were found.
+/// Number of true stretches, and number of those found.
 #[derive(Debug, Default)]
 struct Found {
     all: usize,
-    /// Of the right rank, over most of the stretch.
+    /// Number found with the right rank over most of the stretch.
     covered: usize,
-    /// With all normals within so many degrees.
+    /// Number found with all normals within each of three angles.
     within: [usize; 3],
-    /// Switches, and those found within two samples.
+    /// Number of switches, and of those found within two samples.
     switches: (usize, usize),
-    /// Angle errors over expected ones, squared: mean about 1.
+    /// Squared ratios of angle errors to expected ones; their mean should be about 1.
     angles: Vec<f64>,
     expected: Vec<f64>,
     sure: usize,
@@ -31,7 +31,7 @@ struct Found {
 
 const DEGREES: [f64; 3] = [1.0, 5.0, 15.0];
 
-/// The largest angle between rows found and the span of true ones, in degrees.
+/// The largest angle between the estimated rows and the span of the true ones, in degrees.
 fn off(found: &StretchEstimate, basis: &DMatrix<f64>) -> f64 {
     let outside = found.matrix.transpose() - basis * (basis.tr_mul(&found.matrix.transpose()));
     outside.singular_values().max().min(1.0).asin().to_degrees()
@@ -82,7 +82,7 @@ fn count(estimates: &ConstraintEstimates, truth: &[Switched], samples: usize, fo
     }
 }
 
-/// A policy that is known, with error bars of 0; turned by Q.
+/// A known policy, with error bars of 0, rotated by Q.
 struct Known<F> {
     dim: usize,
     policy: F,
@@ -121,7 +121,7 @@ fn estimated(rows: &Rows, policy: &dyn LearntPolicy) -> ConstraintEstimates {
     ConstraintEstimates::of(rows, policy, &[TaskSpace::recorded()]).unwrap()
 }
 
-/// With the policy known every constraint is found, with its push, and every switch to the sample.
+/// With a known policy every constraint is found, with its push, and every switch to the sample.
 #[test]
 fn constraints_of_a_known_policy_are_found() {
     for (system, push) in [(HIMMELBLAU, 0.0), (HIMMELBLAU, 0.3), (ANGLES, 0.3), (WELLS, 0.3)] {
@@ -139,7 +139,8 @@ fn constraints_of_a_known_policy_are_found() {
     }
 }
 
-/// Slopes of smoothed positions have errors that hardly change from sample to sample: they are no constraints that move.
+/// Slopes of smoothed positions have errors that hardly change from sample to sample. These are not mistaken for moving
+/// constraints.
 #[test]
 fn errors_that_samples_share_are_no_constraints() {
     let (samples, step, error) = (40, 0.05, 0.03 * ANGLES.rms());
@@ -167,7 +168,7 @@ fn errors_that_samples_share_are_no_constraints() {
     assert!(constraints.is_empty(), "{constraints:?}");
 }
 
-/// Free movement has no constraint, a turn of the coordinates turns the rows, and a Jacobian of 1 changes nothing.
+/// Free movement has no constraint, a rotation of the coordinates rotates the rows, and a Jacobian of 1 changes nothing.
 #[test]
 fn free_turned_and_the_same() {
     let (movements, _) = ANGLES.with_truth(0.3, 0.02, 3);
@@ -194,7 +195,7 @@ fn free_turned_and_the_same() {
     }
 }
 
-/// Movements of the velocity u(x) from starts, 30 samples each.
+/// Movements with the velocity u(x) from several starts, 30 samples each.
 fn moved(
     starts: usize,
     start: impl Fn(usize) -> DVector<f64>,
@@ -214,7 +215,8 @@ fn moved(
     Rows::new(DMatrix::from_columns(&states), DMatrix::from_columns(&velocities), indices).unwrap()
 }
 
-/// A circle has no single normal; a policy that stands still shows nothing; along a straight path what lies across is hidden.
+/// A circle has no single normal, a policy at rest shows nothing, and along a straight path the directions across it are
+/// hidden.
 #[test]
 fn what_cannot_be_named_is_not() {
     let known = |policy: fn(&DVector<f64>) -> DVector<f64>| Known { dim: 2, policy, turn: DMatrix::identity(2, 2) };
@@ -248,7 +250,7 @@ fn what_cannot_be_named_is_not() {
     assert!(still.stretches.iter().all(|stretch| stretch.acting == Acting::Unseen), "{still:?}");
 }
 
-/// What does not fit is refused.
+/// Input with mismatched dimensions is refused.
 #[test]
 fn wrong_input_is_refused() {
     let rows = FrontEnd::Velocities.rows(&HIMMELBLAU.movements(0.0, 0.0, 1)).unwrap();
@@ -266,7 +268,7 @@ fn wrong_input_is_refused() {
     assert_eq!(refused, GpError::ShortMovements { longest: 3, needed: 4 });
 }
 
-/// Prints what is found of what there is.
+/// Prints the found and the true numbers.
 #[test]
 #[ignore = "a measurement of minutes; prints"]
 fn measured() {

@@ -1,4 +1,4 @@
-//! Movements towards goals that differ: the goal is a context, and what is learnt holds at goals that were not shown.
+//! Movements towards different goals: the goal is a context, and the learnt policy is valid for new goals.
 
 use crate::drawn;
 use crate::drawn::{matrix, rng, vector};
@@ -13,13 +13,13 @@ fn learner(max_rows: usize) -> AutoGp {
     AutoGp { front_end: FrontEnd::Velocities, slope, ..AutoGp::default() }
 }
 
-/// Contexts times their factors.
+/// Multiplies contexts by their factors.
 fn scaled(demonstrations: &Demonstrations, factors: &DVector<f64>) -> Demonstrations {
     let scaled = |of: &Trajectory| of.clone().with_context(of.context().component_mul(factors)).unwrap();
     Demonstrations::new(demonstrations.trajectories().iter().map(scaled).collect()).unwrap()
 }
 
-/// What is learnt of movements, and the factors of their contexts.
+/// The policies learnt from movements, and the factors of their contexts.
 fn learnt(demonstrations: &Demonstrations, max_rows: usize) -> (AutoFit, DVector<f64>) {
     let (learner, rng) = (learner(max_rows), &mut rng(1));
     let rows = FrontEnd::Velocities.rows(demonstrations).unwrap();
@@ -28,7 +28,7 @@ fn learnt(demonstrations: &Demonstrations, max_rows: usize) -> (AutoFit, DVector
     (learner.fit(&rows, rng).unwrap(), factors)
 }
 
-/// nUPE on movements towards goals that were not shown.
+/// nUPE on movements towards new goals.
 fn error_at_new_goals(fit: &AutoFit, goals: &Goals, factors: &DVector<f64>, seed: u64) -> f64 {
     let fresh = scaled(&goals.movements(20, 1000 + seed), factors);
     let (mut learnt, mut truth) = (Vec::new(), Vec::new());
@@ -44,7 +44,7 @@ fn error_at_new_goals(fit: &AutoFit, goals: &Goals, factors: &DVector<f64>, seed
     metrics::nupe(&DMatrix::from_columns(&truth), &DMatrix::from_columns(&learnt)).unwrap()
 }
 
-/// The same of what is learnt from states alone.
+/// The same for policies learnt from states alone.
 fn error_without_context(goals: &Goals, demonstrations: &Demonstrations, max_rows: usize, seed: u64) -> f64 {
     let without = |of: &Trajectory| of.clone().with_context(DVector::zeros(0)).unwrap();
     let without = Demonstrations::new(demonstrations.trajectories().iter().map(without).collect()).unwrap();
@@ -60,13 +60,13 @@ fn new_goals_are_reached_with_their_context_and_not_without() {
     let error = error_at_new_goals(&fit, &goals, &factors, 1);
     assert!(error < 1e-3, "{error:.1e}");
     assert_eq!(fit.reading(), Hypothesis::Constrained);
-    // Two directions, both of them seen: the context is none.
+    // There are two directions, both observed; the context is not a direction.
     assert_eq!(fit.numbers().least_seen.direction.len(), 2);
     assert!(fit.numbers().seen() && fit.expected_nupe() < 0.01 && fit.warnings().is_empty());
     let without = error_without_context(&goals, &demonstrations, 200, 1);
     assert!(without > 0.1, "{without:.1e}");
 
-    // Far from all goals that were shown less is known of the same state; the trend goes on.
+    // Far from all demonstrated goals the support of the same state is lower; the trend extrapolates.
     let at = |goal: f64| DVector::from_vec(vec![0.3, 0.4, goal * factors[0], goal * factors[1]]);
     assert!(fit.support(at(0.2).as_view()) > 0.95 && fit.support(at(100.0).as_view()) < fit.support(at(0.2).as_view()));
     let x = at(0.2);
@@ -82,7 +82,7 @@ fn new_goals_are_reached_with_their_context_and_not_without() {
     assert_eq!(again.support(x.as_view()), fit.support(x.as_view()));
 }
 
-/// Five seeds of two and three dimensions with twenty and forty goals.
+/// Five seeds in two and three dimensions with twenty and forty goals.
 #[test]
 #[ignore = "forty fits: minutes"]
 fn new_goals_are_reached() {
@@ -139,7 +139,7 @@ fn any_block() -> impl Strategy<Value = Block> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(100))]
 
-    /// A context is a part of the state along which no direction leads; rotation knows it as a distance only.
+    /// A context is a part of the state without directions; rotation depends on it only through a distance.
     #[test]
     fn a_context_is_state_that_does_not_move(
         block in any_block(),
@@ -170,7 +170,7 @@ proptest! {
         prop_assert!((policy.dot(&n) - found).abs() <= 1e-10 * (1.0 + found.abs()));
     }
 
-    /// What is evaluated fast is (S7) as it is written, and the negative gradient of the potential in every context.
+    /// The fast evaluation equals (S7), and the negative gradient of the potential in every context.
     #[test]
     fn policies_in_context_are_sums_over_rows(
         blocks in prop::collection::vec(any_block(), 1..4),
@@ -204,7 +204,7 @@ proptest! {
                 prop_assert!((slope - gradient[axis]).abs() <= 1e-4 * (1.0 + slope.abs()), "{slope} {}", gradient[axis]);
             }
         }
-        // Error bars: what two ways of writing the prior say, and never more than it.
+        // Error bars: two forms of the prior agree, and the posterior never exceeds it.
         let (posterior, prior) = (model.covariance(state.as_view()), model.prior_covariance(state.as_view()));
         prop_assert_eq!(posterior.shape(), (dim, dim));
         prop_assert!((0..dim).all(|k| posterior[(k, k)] <= prior[(k, k)] * (1.0 + 1e-9)));

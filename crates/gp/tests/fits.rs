@@ -1,4 +1,4 @@
-//! Whole fits: what they must not depend on, what they find exactly, and what they refuse.
+//! Whole fits: invariances, exact results, and refused input.
 
 use crate::drawn::{descent, matrix, rng, rows, vector};
 use demo_gen::beyond::{BeyondSystem, ConstraintKind, PolicyKind as Shown};
@@ -33,7 +33,7 @@ proptest! {
         prop_assert!(error < 1e-3, "{error}");
     }
 
-    /// Turned, moved and scaled recordings give the turned, unmoved and scaled policy.
+    /// Rotated, translated and scaled recordings give the rotated, untranslated and scaled policy.
     #[test]
     fn coordinates_do_not_matter(dim in 2_usize..4, seed in any::<u64>(), s in 0.1..10.0_f64, t in 0.1..10.0_f64) {
         let rng = &mut rng(seed);
@@ -54,7 +54,7 @@ proptest! {
         prop_assert!(error < 1e-4, "{error}");
     }
 
-    /// The order of trajectories does not matter, nor does the generator where all rows are learnt from.
+    /// The order of trajectories does not matter, nor does the generator if all rows are used.
     #[test]
     fn order_does_not_matter(seed in any::<u64>()) {
         let given = rows(2, (4, 8), descent, &mut rng(seed));
@@ -70,7 +70,7 @@ proptest! {
         prop_assert!((&a - &b).norm() < 1e-5 * a.norm(), "{a} {b}");
     }
 
-    /// Threads do not matter; what is stored is read back to the last bit.
+    /// The number of threads does not matter; stored fits are read back to the last bit.
     #[test]
     fn same_bits(seed in any::<u64>()) {
         let given = rows(2, (6, 10), |x| descent(x) + DVector::from_vec(vec![-x[1], x[0]]) * 0.3, &mut rng(seed));
@@ -185,7 +185,7 @@ fn one_dimension_has_no_rotation_and_two_movements_are_cut() {
     assert_eq!(both.action(two.states().column(0)), both.direct().action(two.states().column(0)));
 }
 
-/// Where the first family predicts exactly, no other is tried; where it does not, all are.
+/// If the first family predicts exactly, no other is tried; otherwise all are.
 #[test]
 fn an_exact_family_has_no_rival() {
     let learner = SlopeGp { curl_test: CurlTest::AssumePotential, ..SlopeGp::default() };
@@ -202,7 +202,7 @@ fn an_exact_family_has_no_rival() {
     assert!(left > 1e-8, "{left}");
 }
 
-/// What is learnt of ten movements that nothing constrained, at 200 rows, and its nUPE: their velocities are the policy.
+/// The fit of ten unconstrained movements with 200 rows, whose velocities are the policy, and its nUPE.
 fn freely(policy: Shown, seed: u64) -> (SlopeFit, f64) {
     let rng = &mut rng(seed);
     let system =
@@ -215,8 +215,8 @@ fn freely(policy: Shown, seed: u64) -> (SlopeFit, f64) {
     (fit, error)
 }
 
-/// Along a corridor everything is predicted, across it nothing is tested; what was seen is nearly all that is learnt, and
-/// the report does not promise much more than is true.
+/// Along a corridor everything is predicted, across it nothing is tested. The learnt policy is little more than the
+/// observed velocities, and the report is not much too optimistic.
 #[test]
 fn in_a_corridor_little_is_hidden() {
     let fits: Vec<_> = (0..6).map(|seed| freely(Shown::Handwriting, seed)).collect();
@@ -225,7 +225,7 @@ fn in_a_corridor_little_is_hidden() {
     assert!(right >= 5 && warned >= 5, "{right} and {warned} of 6");
 }
 
-/// Which family of potentials is the least wrong where there is none says nothing of the rotation's.
+/// If there is no potential, the best family of potentials is uninformative about the family of the rotation.
 #[test]
 fn a_free_limit_cycle_hides_nothing() {
     for seed in 0..6 {

@@ -1,4 +1,4 @@
-//! What is learnt, and what is said of it, on movements that were not shown.
+//! Learnt policies and their trust reports, tested on new movements.
 
 #![allow(clippy::print_stdout, reason = "the slow tests print what they measure")]
 
@@ -9,7 +9,7 @@ use gp::{AutoGp, CurlTest, DirectGp, Family, FrontEnd, Rows, SlopeFit, SlopeGp};
 use motion::{Demonstrations, Policy as _, Trajectory};
 
 const CLEAN: Disturbed = Disturbed { press: 0.0, noise: 0.0, told: false };
-/// A press of 3 % of the policy's size.
+/// A push of 3 % of the policy's size.
 const PRESSED: Disturbed = Disturbed { press: 0.03, ..CLEAN };
 const NOISY: Disturbed = Disturbed { noise: 0.05, ..CLEAN };
 const NOISE_TOLD: Disturbed = Disturbed { told: true, ..NOISY };
@@ -34,7 +34,7 @@ fn noise_weights(fit: &SlopeFit) -> Vec<f64> {
     serde_json::from_value(stored["slope_gp"]["noise_weights"].clone()).expect("numbers")
 }
 
-/// Slow rows, where the press is nearly all there is, are weighed less; without a press all weigh the same.
+/// Slow rows, in which the push dominates, get less weight; without a push all weights are equal.
 #[test]
 fn slow_rows_weigh_less_where_something_presses() {
     let of = |disturbed| {
@@ -48,7 +48,7 @@ fn slow_rows_weigh_less_where_something_presses() {
     assert!(weights.iter().any(|&weight| weight > 30.0) && error < 0.03, "{error}");
 }
 
-/// A front end that is given a variance makes the rows of certain velocities, with that variance.
+/// With a given variance, the front end makes the same rows as for certain velocities, plus that variance.
 #[test]
 fn a_variance_may_be_given() {
     let DataSet { rows, .. } = data_set(system("saddle"), NOISE_TOLD, 2);
@@ -71,7 +71,7 @@ fn a_variance_may_be_given() {
     assert_ne!(fits[0].action(x), fits[1].action(x));
 }
 
-/// Error bars and the expected error have the same factor.
+/// Error bars and the expected error use the same factor.
 #[test]
 fn bars_and_expected_error_have_one_factor() {
     let DataSet { rows, .. } = data_set(system("quartic3"), CLEAN, 1);
@@ -84,7 +84,7 @@ fn bars_and_expected_error_have_one_factor() {
     let alone = quick().fit(&rows, &mut drawn::rng(1)).expect("a fit");
     let (fit, report) = (both.slope(), both.slope().report());
     assert_eq!(both.reading(), gp::Hypothesis::Constrained);
-    // Directions alone show that constraints varied, as the reading does.
+    // The directions alone show that constraints varied, as the reading does.
     assert!(report.variance_factor() < 1.0 && report.variance_factor() == alone.report().variance_factor());
     assert_eq!(report.expected_nupe, alone.report().expected_nupe);
     let x = rows.states().column(5);
@@ -94,7 +94,7 @@ fn bars_and_expected_error_have_one_factor() {
     assert!((bars[0] - expected).abs() <= 1e-12 * expected);
 }
 
-/// Both Gaussian processes, from 500 rows.
+/// Both Gaussian processes with 500 rows.
 fn learner() -> AutoGp {
     AutoGp {
         slope: SlopeGp { max_rows: 500, hyper_rows: 250, ..SlopeGp::default() },
@@ -103,7 +103,7 @@ fn learner() -> AutoGp {
     }
 }
 
-/// Errors in the order of size.
+/// Errors, sorted.
 fn errors(set: impl Fn(u64) -> DataSet, gp: &SlopeGp, seeds: std::ops::RangeInclusive<u64>) -> Vec<f64> {
     let error = |seed| {
         let DataSet { rows, fresh } = set(seed);
@@ -122,7 +122,7 @@ fn a_press_of_three_per_cent() {
     assert!(errors[6] <= 0.03 && errors[7] <= 0.06, "{errors:?}");
 }
 
-/// Five per cent of the root mean square of a component, not told.
+/// Noise of five per cent of the root mean square of a component, unknown to the learner.
 #[test]
 #[ignore = "ten seconds of a release build"]
 fn noise_in_six_dimensions() {
@@ -132,7 +132,7 @@ fn noise_in_six_dimensions() {
     assert!(errors[4] <= 0.004 && errors[5] <= 0.006, "{errors:?}");
 }
 
-/// Rounded planes in six dimensions: more rows for the evidence are not worse.
+/// Rounded planes in six dimensions: more rows for the marginal likelihood do not increase the error.
 #[test]
 #[ignore = "ten seconds of a release build"]
 fn more_hyper_rows_are_not_worse() {
@@ -144,8 +144,8 @@ fn more_hyper_rows_are_not_worse() {
     assert!(many <= 1.05 * few && many <= 0.2, "{few} {many}");
 }
 
-/// The expected error is within ten times of the true one in nine of ten fits that err by .001, and error bars cover what
-/// they should.
+/// The expected error is within a factor of ten of the true one in nine of ten fits with errors of .001, and error bars
+/// have the right coverage.
 #[test]
 #[ignore = "two minutes of a release build"]
 fn new_movements_are_as_expected() {

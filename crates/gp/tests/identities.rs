@@ -1,4 +1,4 @@
-//! What must change nothing: the truth behind the recordings, the order of rows, and the coordinates they are given in.
+//! Invariances: to the truth behind the recordings, the order of rows, and the coordinates.
 
 use crate::drawn::{descent, matrix, rng, rows, vector};
 use demo_gen::{Recording, Redraw, ToyPotential, ToySystem, demonstrations};
@@ -33,8 +33,8 @@ fn direct(family: Family) -> DirectGp {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(12))]
 
-    /// States, potentials, actions and constraints behind the recordings are for those who score: those of other movements
-    /// in their place change every score and no bit of what is learnt, whatever of it is asked for.
+    /// States, potentials, actions and constraints behind the recordings are for scoring only. Replacing them by those of
+    /// other movements changes every score and no bit of the learnt policies.
     #[test]
     fn the_truth_is_not_learnt_from(
         (potential, other) in (potentials(), potentials()),
@@ -77,7 +77,7 @@ proptest! {
         }
     }
 
-    /// At given amplitudes, which trajectory comes first and how its rows are mixed changes nothing but rounding.
+    /// At given amplitudes, the order of trajectories and the mixing of their rows change nothing but rounding.
     #[test]
     fn the_order_of_rows_does_not_matter(
         (family, dim) in (families(), 2_usize..5), (trajectories, per) in (3_usize..6, 4_usize..8),
@@ -105,7 +105,7 @@ proptest! {
             DirectData::new(rows, weights).expect("rows").condition(&direct_blocks, &direct_theta, kappa).expect("a factor")
         });
         let x = vector(dim, rng);
-        // A Matérn 3/2 turns a rounding of 1e-16 in a squared distance into 1e-8.
+        // A Matérn 3/2 turns a rounding error of 1e-16 in a squared distance into 1e-8.
         let rounding = if family == Family::Rough { 1e-5 } else { 1e-9 };
         let close = |a: &DVector<f64>, b: &DVector<f64>| (a - b).norm() <= rounding * a.norm();
         prop_assert!(close(&a.0.policy().action(x.as_view()), &b.0.policy().action(x.as_view())));
@@ -117,8 +117,8 @@ proptest! {
         }
     }
 
-    /// Turned, moved and scaled recordings: potentials and their differences stay, in units of length² a time; what the
-    /// direct GP learns turns with them.
+    /// Rotated, translated and scaled recordings: potentials and their differences are preserved, in units of length² per
+    /// time, and the direct GP's policy rotates with them.
     #[test]
     fn potentials_and_direct_policies_do_not_depend_on_coordinates(
         (family, dim) in (families(), 2_usize..4), seed in any::<u64>(), (s, t) in (0.1..10.0_f64, 0.1..10.0_f64),
@@ -156,7 +156,7 @@ proptest! {
     }
 }
 
-/// Bits of all that can be asked of what was learnt at a state.
+/// Bits of all outputs of a learnt policy at a state.
 fn answers(learnt: &dyn LearntPolicy, x: &DVector<f64>) -> Vec<u64> {
     let mut deviation = DVector::zeros(x.len());
     assert!(learnt.action_sd_into(x.as_view(), deviation.as_view_mut()));

@@ -1,11 +1,11 @@
-//! Covariances of slopes are second differences of those of potentials; fast matrices are the literal ones.
+//! Covariances of slopes are second differences of those of potentials; fast matrices equal the literal ones.
 
 use crate::drawn::{matrix, rng, vector};
 use gp::{Block, Shape};
 use nalgebra::DVector;
 use proptest::prelude::*;
 
-/// Whether two numbers agree to `tolerance`, absolute.
+/// Whether two numbers agree to an absolute `tolerance`.
 fn close(a: f64, b: f64, tolerance: f64) -> bool {
     (a - b).abs() <= tolerance
 }
@@ -60,7 +60,7 @@ proptest! {
         prop_assert!(close(policy.dot(&n), slope, 1e-12));
     }
 
-    /// Policies of the rotational blocks have no divergence.
+    /// Policies of the rotational blocks are divergence-free.
     #[test]
     fn rotation_has_no_divergence(
         block in prop_oneof![Just(Block::Skew), (0.3..3.0).prop_map(Block::DivergenceFree)],

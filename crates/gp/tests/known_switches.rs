@@ -1,4 +1,4 @@
-//! Recordings that name the constraint at every sample: switches need not be looked for.
+//! Recordings that name the constraint of every sample, so that switches need not be searched for.
 
 #![allow(clippy::print_stdout, reason = "the slow test prints what it measures")]
 
@@ -24,7 +24,7 @@ fn rows(system: &System, (push, noise): (f64, f64), seed: u64) -> (Rows, Rows) {
     (front_end.rows(&movements).unwrap(), known)
 }
 
-/// A press with 5 % of noise, in two dimensions: no switch is found, but a known one tells the policy.
+/// A push with 5 % of noise in two dimensions: no switch is detected, but known ones determine the policy.
 #[test]
 fn known_switches_tell_a_policy_from_noise() {
     let (plain, known) = rows(&HIMMELBLAU, (0.3, 0.05), 1);
@@ -33,7 +33,7 @@ fn known_switches_tell_a_policy_from_noise() {
     assert!(told < 0.3 * found, "found {found:.1e}, known {told:.1e}");
 }
 
-/// Constraints that are estimated lie between the switches that are known, whatever is seen of them.
+/// Estimated constraints lie between known switches, whether or not the data show the switches.
 #[test]
 fn constraints_lie_between_known_switches() {
     let (movements, truth) = ANGLES.with_truth(0.3, 0.05, 2);
@@ -60,7 +60,7 @@ fn a_label_a_row() {
     assert!(labelled.labels().unwrap().iter().copied().eq(left));
 }
 
-/// Names that stay the same within every movement say nothing of switches.
+/// Names that are constant within every movement give no information about switches.
 #[test]
 fn names_of_whole_movements_are_no_switches() {
     let (movements, _) = ANGLES.with_truth(0.3, 0.0, 3);
@@ -72,7 +72,7 @@ fn names_of_whole_movements_are_no_switches() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(4))]
 
-    /// Only where names change matters, not what they are.
+    /// Only the changes of names matter, not the names themselves.
     #[test]
     fn names_do_not_matter(seed in 0u64..1000, names in prop::sample::select(vec![["", "b"], ["10", "9"], ["é", "e"]])) {
         let (movements, truth) = ANGLES.with_truth(0.3, 0.02, seed);
@@ -87,7 +87,7 @@ proptest! {
     }
 }
 
-/// Prints errors with switches that are found and that are known.
+/// Prints errors with detected and with known switches.
 #[test]
 #[ignore = "a measurement of minutes; prints"]
 fn measured() {

@@ -1,4 +1,4 @@
-//! Predictions are the sums that they stand for, and the same bits one by one, at many states and on any number of threads.
+//! Predictions equal the sums that define them, with the same bits one by one, at many states and on any number of threads.
 
 use crate::drawn::{descent, matrix, rng, rows, vector};
 use gp::{
@@ -13,7 +13,7 @@ fn families() -> impl Strategy<Value = Family> {
     prop_oneof![Just(Family::Smooth), Just(Family::Medium), Just(Family::Rough)]
 }
 
-/// Rows with a context of so many dimensions, the same along each trajectory, of a policy that may rotate.
+/// Rows with a context of given dimension, constant along each trajectory, of a policy that may rotate.
 fn in_context((dim, rotates): (usize, bool), context: usize, (trajectories, per): (usize, usize), seed: u64) -> Rows {
     let rng = &mut rng(seed);
     let turned = |x: &DVector<f64>| DVector::from_fn(dim, |k, _| [-x[1], x[0]].get(k).copied().unwrap_or(0.0));
@@ -56,7 +56,7 @@ fn literal_slope(formula: &SlopeFormula<'_>, z: DVectorView<'_, f64>) -> (DVecto
     (action, potential, magnitude)
 }
 
-/// Σ k(z, z') A, and the sum of magnitudes.
+/// Σ k(z, z') A, and the sum of the magnitudes.
 fn literal_direct(formula: &DirectFormula<'_>, z: DVectorView<'_, f64>) -> (DVector<f64>, f64) {
     let (mut action, mut magnitude) = (DVector::zeros(formula.weights.nrows()), 0.0);
     let [constant, linear, quadratic] = formula.trend;
@@ -74,7 +74,7 @@ fn literal_direct(formula: &DirectFormula<'_>, z: DVectorView<'_, f64>) -> (DVec
     (action, magnitude)
 }
 
-/// Answers at each state alone.
+/// Outputs at each state separately.
 fn one_by_one(policy: &dyn LearntPolicy, states: &DMatrix<f64>) -> (DMatrix<f64>, DMatrix<f64>, Vec<f64>) {
     let (mut actions, mut deviations) = (states.clone(), states.clone());
     for ((state, action), mut deviation) in
@@ -91,7 +91,7 @@ fn one_by_one(policy: &dyn LearntPolicy, states: &DMatrix<f64>) -> (DMatrix<f64>
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
-    /// More dimensions than stand on the stack, too.
+    /// Includes more dimensions than fit on the stack.
     #[test]
     fn predictions_are_sums_over_rows(
         (family, rotates) in (families(), any::<bool>()), dim in prop_oneof![2_usize..6, Just(35)],
@@ -126,7 +126,7 @@ proptest! {
         }
     }
 
-    /// A few states, and more than go to one thread.
+    /// A few states, and more than one thread gets.
     #[test]
     fn many_states_are_one_after_the_other(
         (family, rotates) in (families(), any::<bool>()), dim in 2_usize..5, context in 0_usize..3, count in 1_usize..150,
@@ -161,7 +161,7 @@ fn no_states_have_no_answers() {
     }
 }
 
-/// So that the tests above evaluate rotation too.
+/// Ensures that the tests above also evaluate rotation.
 #[test]
 fn a_policy_that_rotates_is_found_to() {
     let (slope, _) = fits(&in_context((2, true), 1, (6, 15), 1), Family::Smooth, true);
@@ -176,7 +176,7 @@ fn states_of_another_length_are_refused() {
     slope.certainty(DMatrix::zeros(3, 4).as_view());
 }
 
-/// Far away nothing is known, and no number is a surprise.
+/// Far from all rows nothing is known, and all numbers remain valid.
 #[test]
 fn far_from_all_rows_nothing_is_known() {
     for family in Family::ALL {

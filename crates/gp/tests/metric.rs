@@ -1,4 +1,4 @@
-//! Constraints at right angles in a metric that depends on the state, as where a robot's inertia weighs its joints.
+//! Constraints that are orthogonal in a metric that depends on the state, as if a robot's inertia weights its joints.
 
 use gp::{GpError, Rows, SlopeGp};
 use motion::{Policy, SampleIndex};
@@ -16,7 +16,7 @@ fn policy(q: &Vector2<f64>) -> Vector2<f64> {
     Vector2::new(-q.x.sin() - 0.3 * (q.x - q.y).sin(), -0.5 * q.y + 0.3 * (q.x - q.y).sin())
 }
 
-/// Rows of 30 movements under a line each that they cannot leave, and Mu of each.
+/// Rows of 30 movements, each restricted to a line, and Mu of each row.
 fn rows(seed: u64) -> (Rows, DMatrix<f64>) {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let (mut states, mut velocities, mut momenta, mut indices) = (vec![], vec![], vec![], vec![]);
@@ -57,7 +57,7 @@ fn policies_are_found_in_the_metric_of_inertia() {
     assert!(with < 1e-4 && without > 0.05, "{with:.1e} {without:.1e}");
 }
 
-/// Velocities as momenta are the plain metric: nothing changes but rounding.
+/// With velocities as momenta the metric is the identity: nothing changes except rounding.
 #[test]
 fn the_plain_metric_is_the_identity() {
     let (plain, _) = rows(2);

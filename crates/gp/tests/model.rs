@@ -1,4 +1,4 @@
-//! The model with everything given: means, evidence and left-out trajectories against their definitions.
+//! The model with given parameters: compares means, marginal likelihood and left-out predictions with their definitions.
 
 use crate::drawn::{descent, rng, rows, vector};
 use gp::{DirectData, Evidence, Family, Rows, SlopeData, Trend};
@@ -18,7 +18,7 @@ fn noise_weights<R: rand::Rng>(count: usize, rng: &mut R) -> Vec<f64> {
     (0..count).map(|_| rng.random_range(0.2..3.0)).collect()
 }
 
-/// The gradient of an evidence at θ is that of its values.
+/// Checks the gradient of a marginal likelihood at θ by differences of its values.
 fn agrees_with_differences(theta: &[f64], evidence: impl Fn(&[f64]) -> Evidence) -> Result<(), TestCaseError> {
     let gradient = evidence(theta).gradient;
     for k in 0..theta.len() {
@@ -36,7 +36,7 @@ fn agrees_with_differences(theta: &[f64], evidence: impl Fn(&[f64]) -> Evidence)
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(40))]
 
-    /// (S9) by differences of (S8), with rotation too.
+    /// (S9) by differences of (S8), also with rotation.
     #[test]
     fn evidence_has_its_gradient(family in families(), dim in 2_usize..5, seed in any::<u64>()) {
         let rng = &mut rng(seed);
@@ -81,7 +81,7 @@ proptest! {
         prop_assert_eq!(-potential.gradient(x.as_view()), action);
     }
 
-    /// (S10): leaving a trajectory out in closed form is leaving it out. The same rows are kept in units of all rows.
+    /// (S10): the closed form equals a model without the trajectory. Rows are in the units of all rows.
     #[test]
     fn left_out_is_left_out(family in families(), dim in 2_usize..4, seed in any::<u64>()) {
         let rng = &mut rng(seed);
@@ -102,7 +102,7 @@ proptest! {
         }
     }
 
-    /// (S13) read literally.
+    /// (S13), evaluated literally.
     #[test]
     fn uncertainty_is_the_conditional_covariance(family in families(), dim in 2_usize..5, seed in any::<u64>()) {
         let rng = &mut rng(seed);
@@ -118,13 +118,14 @@ proptest! {
         let scale = prior.amax();
         prop_assert!((model.prior_covariance(x.as_view()) - &prior).amax() <= 1e-13 * scale);
         let found = model.covariance(x.as_view());
-        // A Matérn 3/2 turns a rounding of 1e-16 in a squared distance into 1e-8, on the diagonal of the rows' covariance.
+        // A Matérn 3/2 turns a rounding error of 1e-16 in a squared distance into 1e-8, on the diagonal of the rows'
+        // covariance.
         let tolerance = if family == Family::Rough { 1e-6 } else { 1e-9 };
         prop_assert!((&found - &posterior).amax() <= tolerance * scale, "{found} {posterior}");
     }
 
-    /// (S13) is the covariance of what is drawn from the prior, given the rows: never above the prior, and nearly 0
-    /// at a row along its direction when there is no noise.
+    /// (S13) is the covariance of samples from the prior, conditioned on the rows: never above the prior, and nearly 0 at
+    /// a row along its direction if there is no noise.
     #[test]
     fn rows_tell_about_their_own_states(family in families(), dim in 2_usize..5, seed in any::<u64>()) {
         let rng = &mut rng(seed);
@@ -143,7 +144,7 @@ proptest! {
     }
 }
 
-/// (S3), (S6) as they are written.
+/// (S3), (S6), evaluated literally.
 struct Literal {
     k: DMatrix<f64>,
     targets: DVector<f64>,
@@ -195,7 +196,7 @@ impl Literal {
         (prior * data.speed().powi(2), posterior * data.speed().powi(2))
     }
 
-    /// Prediction of some rows from the others, and its variance with noise.
+    /// Prediction of some rows from the others, and its variance including noise.
     fn without(&self, out: std::ops::Range<usize>) -> (DVector<f64>, DVector<f64>) {
         let rest: Vec<usize> = (0..self.targets.len()).filter(|row| !out.contains(row)).collect();
         let out: Vec<usize> = out.collect();

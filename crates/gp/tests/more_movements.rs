@@ -1,4 +1,4 @@
-//! More data are never worse, and the program expects the error that it has.
+//! More data never increase the error, and the expected error matches the actual one.
 
 #![allow(clippy::print_stdout, reason = "the slow test prints what it measures")]
 
@@ -9,11 +9,11 @@ use gp::{AutoGp, SlopeFit, SlopeGp};
 use motion::{LearntPolicy as _, Policy as _};
 use nalgebra::{DMatrix, DVector};
 
-/// Groups of twenty new movements that a policy is judged on.
+/// Number of groups of twenty new movements on which a policy is evaluated.
 const GROUPS: usize = 20;
 
-/// A fit on new movements: typical nUPE of twenty (the geometric mean over groups, since one movement of hundreds may have nearly all of
-/// the error), the expected error over it, and z², the mean square of errors over error bars.
+/// Performance of a fit on new movements: typical nUPE of twenty (the geometric mean over groups, because one movement in hundreds may
+/// have nearly all of the error), the expected error divided by it, and z², the mean square of errors divided by error bars.
 struct Judged {
     nupe: f64,
     expected: f64,
@@ -36,8 +36,8 @@ fn judged(fit: &SlopeFit, groups: &[(DMatrix<f64>, DMatrix<f64>)]) -> Judged {
     Judged { nupe, expected: fit.report().expected_nupe / nupe, z_squared: sum / count }
 }
 
-/// Movements of 500 samples, five times and fifty times as many: medians of five data sets, or of `SETS`, as a table, and what the fit
-/// expects of itself, least and most. Learner and settings are the program's, without its search for constraints that push.
+/// Movements of 500 samples, and five and fifty times as many: a table of medians over five data sets, or over `SETS`, and the least and
+/// greatest expected errors. Learner and settings are the program's, without the search for pushing constraints.
 #[test]
 #[ignore = "ten minutes of a release build; prints"]
 fn more_movements_are_never_worse() {
@@ -88,7 +88,8 @@ fn more_movements_are_never_worse() {
     let share = (near[0] + near[1]) as f64 / (all[0].len() + all[1].len()) as f64;
     println!("within ten times: {near:?} of {} clean and {} noisy", all[0].len(), all[1].len());
     assert!(share >= 0.9, "{share}");
-    // Of noisy velocities never far too little. Of clean ones once: a corner of the space that no movement of forty visited.
+    // For noisy velocities, the expected error is never far too small. For clean ones it is once, in a corner of the space that none of
+    // forty movements visited.
     let least = all[1].iter().map(|fit| fit.expected).fold(f64::INFINITY, f64::min);
     let widest = all.iter().flatten().map(|fit| fit.z_squared).fold(0.0, f64::max);
     assert!(least >= 0.1 && widest <= 30.0, "{least} {widest}");

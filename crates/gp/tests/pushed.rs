@@ -1,4 +1,4 @@
-//! Constraints that push, A u = b with b ≠ 0: policies are found from the directions in which velocities differ.
+//! Constraints that push, A u = b with b ≠ 0: policies are learnt from the directions in which velocities differ.
 
 use crate::systems;
 use crate::systems::{ANGLES, HIMMELBLAU, System, WELLS, error};
@@ -13,7 +13,7 @@ fn learnt(system: &System, push: f64, noise: f64, seed: u64) -> AutoFit {
     systems::learnt(&FrontEnd::Velocities.rows(&system.movements(push, noise, seed)).unwrap(), seed)
 }
 
-/// Even a push of three hundredths of the policy, or of a third, leaves nothing of the error.
+/// A push of three hundredths or a third of the policy adds no error.
 #[test]
 fn pushes_do_not_spoil_the_policy() {
     for (system, most) in [(HIMMELBLAU, 1e-6), (ANGLES, 1e-2), (WELLS, 1e-2)] {
@@ -28,15 +28,15 @@ fn pushes_do_not_spoil_the_policy() {
     }
 }
 
-/// Velocities with five per cent of noise, and a push of a third of the policy: without stretches .11 to .67 is left.
+/// Velocities with five per cent of noise, and a push of a third of the policy: without stretches the error is .11 to .67.
 #[test]
 fn pushes_are_found_in_noise() {
     let error = error(&ANGLES, &learnt(&ANGLES, 0.3, 0.05, 1), 1);
     assert!(error < 0.06, "{error:.1e}");
 }
 
-/// Long movements, a switch in each, two per cent of noise: some switches are not seen, and what such a stretch says is contradicted by
-/// others. If it counts in full the error is .006.
+/// Long movements with one switch each, two per cent of noise: some switches are not detected, and other movements contradict the
+/// resulting stretches. With full weight for these, the error is .006.
 #[test]
 fn contradicted_stretches_count_less() {
     for seed in [1, 4] {
@@ -47,7 +47,8 @@ fn contradicted_stretches_count_less() {
     }
 }
 
-/// The same with five per cent: two of three movements rest too soon to have a stretch, and a whole one would hold two.
+/// The same with five per cent of noise: two thirds of the movements come to rest too soon to have a stretch, and a single stretch for the
+/// whole movement would contain two.
 #[test]
 fn switches_in_noise_are_found() {
     for seed in [1, 2] {
@@ -59,7 +60,7 @@ fn switches_in_noise_are_found() {
     }
 }
 
-/// Where nothing pushes, rows stay those of samples.
+/// If nothing pushes, rows remain those of samples.
 #[test]
 fn without_a_push_none_is_found() {
     for system in [HIMMELBLAU, ANGLES, WELLS] {
@@ -67,8 +68,8 @@ fn without_a_push_none_is_found() {
     }
 }
 
-/// Of pressed movements, too, more say more: a limit cycle with a tenth of noise, learnt from as the program does. What samples say of it
-/// is wrong however many they are.
+/// More movements also reduce the error under a push: a limit cycle with a tenth of noise, learnt with the program's settings. Rows of
+/// samples are wrong here, whatever their number.
 #[test]
 fn more_pressed_movements_are_better() {
     let [few, many] = [50, 400].map(|n_trajectories| {
@@ -92,8 +93,8 @@ fn more_pressed_movements_are_better() {
     assert!(few.1 == 400 && many.1 > 1000, "{few:?} {many:?}");
 }
 
-/// Potentials under constraints that push with a third of the policy, for whole movements or new once within each: what the program learns
-/// of more movements and of more noise, as a table. `SETS` is the number of data sets, by default two.
+/// Potentials under constraints that push with a third of the policy, for whole movements or with one switch in each: a table of the
+/// program's errors with more movements and with more noise. `SETS` is the number of data sets, by default two.
 #[test]
 #[ignore = "minutes of a release build; prints"]
 #[allow(clippy::print_stdout, reason = "the table is printed")]

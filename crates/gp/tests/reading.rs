@@ -1,4 +1,4 @@
-//! Near passes, and the rule by which a reading is chosen.
+//! Near passes, and the rule that selects a reading.
 
 use crate::drawn::{descent, matrix, rng, rows};
 use demo_gen::beyond::{BeyondSystem, ConstraintKind, PolicyKind};
@@ -11,7 +11,7 @@ use motion::{Policy as _, SampleIndex};
 use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
 
-/// `trajectories` copies of the same states, moving as `sign` of the trajectory says.
+/// `trajectories` copies of the same states; `sign` determines each trajectory's direction.
 fn copies(trajectories: usize, per: usize, sign: impl Fn(usize) -> f64, seed: u64) -> Rows {
     let rng = &mut rng(seed);
     let (x, u) = (matrix(3, per, rng), matrix(3, per, rng) + DMatrix::from_element(3, per, 5.0));
@@ -25,7 +25,7 @@ fn copies(trajectories: usize, per: usize, sign: impl Fn(usize) -> f64, seed: u6
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(50))]
 
-    /// The same movement twice differs by 0, its reverse by 2.
+    /// A movement differs from its copy by 0, from its reverse by 2.
     #[test]
     fn same_and_opposite(per in 4_usize..12, seed in any::<u64>()) {
         let near = |rows: &Rows| NearPasses::of(rows, 1e-9, &mut rng(0)).expect("a distance");
@@ -51,7 +51,7 @@ proptest! {
 }
 
 proptest! {
-    /// In one dimension nothing is across: whatever the numbers, they show no hidden part and leave no doubt of one.
+    /// One dimension has no direction across: whatever the numbers, they show no hidden part and do not suggest one.
     #[test]
     fn a_line_hides_nothing(
         (a_s, a_d) in (0.0..2.0, 0.0..2.0),
@@ -68,7 +68,7 @@ proptest! {
     }
 }
 
-/// Numbers for which every step of the rule but the last is passed by.
+/// Numbers that pass every step of the rule but the last.
 fn numbers() -> ReadingNumbers {
     ReadingNumbers {
         a_s: 0.02,
@@ -164,7 +164,7 @@ fn the_user_may_know_better() {
     assert!(fit.text().contains("You decided: Free"), "{}", fit.text());
 }
 
-/// What is learnt of movements, whose velocities may have noise of so many decibels.
+/// The fit of movements whose velocities may have noise, given in decibels.
 fn learnt(policy: PolicyKind, constraint: ConstraintKind, n_trajectories: usize, decibels: Option<f64>) -> AutoFit {
     let system = BeyondSystem { policy, constraint, n_trajectories, ..BeyondSystem::default() };
     let rng = &mut rng(1);
@@ -180,7 +180,7 @@ fn learnt(policy: PolicyKind, constraint: ConstraintKind, n_trajectories: usize,
     learner.fit(&rows, &mut self::rng(1)).expect("a fit")
 }
 
-/// Of five movements on the plane, stretches once explained what nothing pushed.
+/// Regression: with five movements on the plane, stretches once seemed informative though nothing pushed.
 #[test]
 fn five_free_movements_push_nothing() {
     let fit = learnt(PolicyKind::Sinusoidal, ConstraintKind::Free, 5, None);
@@ -188,7 +188,7 @@ fn five_free_movements_push_nothing() {
     assert_eq!(fit.slope().report().push, None);
 }
 
-/// Noise moves across a constraint that all movements have, but little.
+/// Noise causes motion across a constraint common to all movements, but little.
 #[test]
 fn noise_across_one_constraint_for_all_is_no_freedom() {
     let fit = learnt(PolicyKind::Wells { dim: 3 }, ConstraintKind::OneForAll, 20, Some(30.0));
@@ -196,7 +196,7 @@ fn noise_across_one_constraint_for_all_is_no_freedom() {
     assert_eq!(fit.reading(), Hypothesis::Ambiguous, "{:?}", fit.numbers());
 }
 
-/// Of certain velocities, which all weigh the same, errors of a movement are those of its rows.
+/// If all velocities are certain and weigh the same, the errors of a movement are those of its rows.
 #[test]
 fn errors_of_movements_are_those_of_their_rows() {
     let fit = learnt(PolicyKind::Sinusoidal, ConstraintKind::Free, 8, None);

@@ -1,4 +1,4 @@
-//! What rows say of themselves.
+//! Properties that rows report.
 
 use gp::{FrontEnd, Rows};
 use motion::{Demonstrations, SampleIndex, Trajectory};
@@ -6,7 +6,7 @@ use nalgebra::DMatrix;
 use proptest::prelude::*;
 
 proptest! {
-    /// Euler's steps u_{i+1} = (1 − w) u_i differ from a steady flow by w/2, whatever their direction, size and number.
+    /// Euler steps u_{i+1} = (1 − w) u_i differ from a steady flow by w/2, whatever their direction, size and number.
     #[test]
     fn steps_differ_from_a_flow_by_half_their_change(
         w in 0.0..0.9f64,
@@ -22,14 +22,14 @@ proptest! {
         let states = velocities.map(|u| 2.0 * u);
         let indices: Vec<SampleIndex> = (0..velocities.ncols()).map(at).collect();
         let rows = Rows::new(states, velocities, indices).unwrap();
-        prop_assert_eq!(rows.step_change(), None); // recorded velocities are what they are
+        prop_assert_eq!(rows.step_change(), None); // recorded velocities have no step change
         let change = rows.with_findings(0.1, Some(vec![vec![0.0; samples]; trajectories])).step_change().unwrap();
         prop_assert!((change - w * w / 4.0).abs() < 1e-12 * (1.0 + w), "{change} {w}");
     }
 }
 
-/// Smooth velocities are exact, alternating ones have the variance that third differences show, and positions alone are exact too: their
-/// absence is an error of [`FrontEnd::rows`].
+/// Smooth velocities are exact, alternating ones have the variance that third differences show. Positions alone also count as exact; the
+/// absence of velocities is an error of [`FrontEnd::rows`].
 #[test]
 fn recorded_velocities_come_with_their_noise() {
     let of = |ripple: f64| {
@@ -41,7 +41,7 @@ fn recorded_velocities_come_with_their_noise() {
     };
     assert_eq!(of(0.0), FrontEnd::Velocities);
     let FrontEnd::NoisyVelocities { variance } = of(0.1) else { panic!("noise was not seen") };
-    // Third differences of a ripple are 8 times it.
+    // Third differences of an alternating signal are 8 times the signal.
     let deviation = 1.4826 * 0.8 / 20f64.sqrt();
     assert!((variance / (deviation * deviation) - 1.0).abs() < 1e-3, "{variance}");
     let bare = Demonstrations::new(vec![Trajectory::new(DMatrix::zeros(2, 100), 0.1).unwrap()]).unwrap();

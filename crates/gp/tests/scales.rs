@@ -1,4 +1,4 @@
-//! The unit of each axis is learnt from constraints, which act at right angles in the right one only.
+//! The unit of each axis is learnt from constraints, which are orthogonal projections only in the right units.
 
 use crate::systems::{ANGLES, HIMMELBLAU, System, WELLS};
 use gp::{Family, FrontEnd, LearntScales, PushTest, Rows, SlopeGp};
@@ -7,7 +7,7 @@ use nalgebra::DVector;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
-/// What is learnt where axis 1 was recorded in a unit so many times too small.
+/// The scales learnt if axis 1 was recorded in a unit too small by `factor`.
 fn learnt(system: &System, factor: f64, noise: f64) -> Option<LearntScales> {
     pushed(system, factor, (0.0, noise), PushTest::AssumeNone)
 }
@@ -47,7 +47,7 @@ fn units_are_found_in_noise() {
     }
 }
 
-/// A plain factor is replaced by what it must have been.
+/// A factor close to a plain one is replaced by it.
 #[test]
 fn millimetres_are_exact() {
     let learnt = learnt(&ANGLES, 1000.0, 0.0).unwrap();
@@ -63,7 +63,7 @@ fn right_units_stay() {
     }
 }
 
-/// Constraints that push, recorded in mixed units: from samples alone scales are wrong or none.
+/// Constraints that push, recorded in mixed units: from samples alone the scales are wrong or none.
 #[test]
 fn units_are_found_where_constraints_push() {
     for (system, noise, most) in [(ANGLES, 0.0, 0.02), (WELLS, 0.0, 0.02), (ANGLES, 0.02, 0.15)] {

@@ -1,4 +1,4 @@
-//! Stored fits: a file of version 1 is read for ever, damaged ones are refused.
+//! Stored fits: files of version 1 remain readable, damaged ones are refused.
 
 use crate::drawn;
 use gp::{AutoFit, MOST_ROWS};
@@ -6,7 +6,7 @@ use motion::{LearntPolicy as _, Policy as _};
 use nalgebra::DVector;
 use serde_json::{Value, json};
 
-/// Written by version 1: both readings of six drawn movements, and what both policies do at three states.
+/// Written by version 1: both readings of six random movements, and both policies' outputs at three states.
 const GOLDEN: &str = include_str!("golden/both_readings_v1.json");
 
 fn golden() -> Value {
@@ -52,7 +52,7 @@ fn damaged_files_are_refused() {
     }
 }
 
-/// Both readings with so many rows, all alike.
+/// A stored fit of both readings with so many identical rows.
 fn of_rows(rows: usize) -> Value {
     let mut fit = golden()["fit"].clone();
     let mut fill = |place: &str, value: f64, count: usize| {
@@ -100,7 +100,7 @@ fn more_rows_than_error_bars_have_memory_for_are_refused() {
 #[test]
 fn rows_without_a_factor_leave_the_prior() {
     let mut stored = of_rows(3);
-    // So much that sums overflow: there is no factor.
+    // So large that sums overflow: there is no factor.
     stored["direct"]["direct_gp"]["blocks"][0][1] = json!(1e308);
     stored["direct"]["direct_gp"]["blocks"][3][1] = json!(1e308);
     let fit: AutoFit = serde_json::from_value(stored).expect("a fit");
@@ -108,7 +108,8 @@ fn rows_without_a_factor_leave_the_prior() {
     assert_eq!(fit.direct().support(at.as_view()), 0.0);
 }
 
-/// Writes the golden file anew: `cargo test -p policy-align-gp --test all stored -- --ignored`. Only for a new version.
+/// Writes the golden file again: `cargo test -p policy-align-gp --test all stored -- --ignored`. Only for a new
+/// version.
 #[test]
 #[ignore = "writes the golden file"]
 fn write_golden() {

@@ -1,4 +1,4 @@
-//! Policies learnt from constraints that are constant where a robot's hand is: (S40), (S41).
+//! Policies learnt from constraints that are constant in the space of a robot's hand: (S40), (S41).
 
 use demo_gen::tasks::{Contact, Wiping};
 use demo_gen::{Recording, demonstrations, with_velocity_noise};
@@ -10,10 +10,10 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 const ARM: &str = include_str!("../../../robots/seven_joint_arm.urdf");
-/// Movements that are not learnt from.
+/// Number of test movements, which no learner sees.
 const FRESH: usize = 20;
 
-/// An arm that wipes surfaces, each movement of another tilt.
+/// An arm that wipes surfaces, with another tilt in each movement.
 struct Wiped {
     system: Wiping,
     shown: Vec<Recording>,
@@ -29,7 +29,7 @@ fn wiped(set: u64) -> Wiped {
 }
 
 impl Wiped {
-    /// Of the tool at every sample: where its position, its orientation and both are constant.
+    /// Jacobian (6, n) of the tool's position and orientation at every sample.
     fn jacobians(&self) -> Vec<DMatrix<f64>> {
         let mut workspace = Workspace::new();
         let states = self.shown.iter().flat_map(|of| of.truth.states.column_iter());
@@ -51,7 +51,7 @@ impl Wiped {
         Rows::new(DMatrix::from_columns(&states), velocities, indices).unwrap()
     }
 
-    /// Velocities at every sample that follow the policy where the tool's speed along a normal of each movement is `press`.
+    /// Velocities at every sample that follow the policy, with the tool's speed along a normal of each movement equal to `press`.
     fn pressed(&self, press: f64, rng: &mut ChaCha8Rng) -> DMatrix<f64> {
         let jacobians = self.jacobians();
         let mut columns = Vec::new();
@@ -74,7 +74,7 @@ impl Wiped {
         vec![space(0, 3), space(3, 3), space(0, 6)]
     }
 
-    /// nUPE on movements that nobody learnt from.
+    /// nUPE on test movements.
     fn error(&self, fit: &AutoFit) -> f64 {
         let states = self.fresh.iter().flat_map(|of| of.truth.states.column_iter());
         let actions: Vec<_> = self.fresh.iter().flat_map(|of| of.truth.actions.column_iter()).collect();
@@ -84,7 +84,7 @@ impl Wiped {
     }
 }
 
-/// As the program learns.
+/// Learns with the program's settings.
 fn learnt(rows: &Rows) -> AutoFit {
     let (max_rows, hyper_rows) = (400, 200);
     let learner = AutoGp {
@@ -95,7 +95,8 @@ fn learnt(rows: &Rows) -> AutoFit {
     learner.fit(rows, &mut ChaCha8Rng::seed_from_u64(1)).unwrap()
 }
 
-/// A third of the error of estimators that are given the Jacobian and the rank of A is .0014; without the robot it is .02 to .05.
+/// One third of the error of estimators that receive the Jacobian and the rank of A is .0014; without the robot the error is .02
+/// to .05.
 #[test]
 #[ignore = "half a minute; the hand that is pressed is harder"]
 fn constraints_of_a_hand_are_learnt_from() {
@@ -112,7 +113,8 @@ fn constraints_of_a_hand_are_learnt_from() {
     assert!(wiped.error(&without) > 0.02 && without.slope().report().task_space.is_none());
 }
 
-/// Noise of a tenth of the velocities is a larger share of each of a sample's many rows than of the one along its velocity.
+/// With noise of a tenth of the velocities, each of a sample's many rows has a larger share of noise than the one along its
+/// velocity.
 #[test]
 #[ignore = "half a minute"]
 fn constraints_of_a_hand_are_learnt_from_in_noise() {
@@ -129,7 +131,7 @@ fn constraints_of_a_hand_are_learnt_from_in_noise() {
     }
 }
 
-/// A press of a third of the tool's speed.
+/// A push of a third of the tool's speed.
 #[test]
 fn a_hand_that_is_pressed_is_learnt_from() {
     let wiped = wiped(2);
@@ -142,7 +144,7 @@ fn a_hand_that_is_pressed_is_learnt_from() {
     assert!(wiped.error(&learnt(&rows)) > 0.03, "{}", wiped.error(&learnt(&rows)));
 }
 
-/// Spaces in which nothing is constant are not taken: random ones change no bit of what is learnt.
+/// Spaces in which nothing is constant are not used: random ones do not change a bit of the result.
 #[test]
 fn spaces_of_another_robot_are_left() {
     let wiped = wiped(3);

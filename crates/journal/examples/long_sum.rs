@@ -1,4 +1,5 @@
-//! Adds up squares, one after the other. Interrupted, it goes on with the next one: `cargo run --example long_sum`.
+//! Adds up squares, one after the other. After an interruption, it resumes with the next one:
+//! `cargo run --example long_sum`.
 
 #![allow(clippy::print_stdout, reason = "an example prints")]
 
@@ -13,7 +14,7 @@ fn main() -> io::Result<()> {
     println!("{} of 20 are done, in {}", found.records.len(), path.display());
     let mut sum: f64 = found.records.iter().map(|(_, square)| square).sum();
     for number in found.records.len() as u32..20 {
-        std::thread::sleep(Duration::from_millis(100)); // what takes long
+        std::thread::sleep(Duration::from_millis(100)); // stands for slow work
         let square = f64::from(number).powi(2);
         journal.append(&(number, square))?;
         sum += square;

@@ -1,7 +1,7 @@
-//! Finished work, kept in a file as it is finished, so that a program that was interrupted or killed goes on.
+//! Saves results in a file as they are finished, so that a program can resume after an interruption or a kill.
 //!
-//! The first line says what kind of journal it is. Every other line is one record: the SHA-256 of its text, a blank, and JSON. A torn
-//! or changed line is counted and passed over; it costs that record alone.
+//! The first line contains the kind of journal. Every other line is one record: the SHA-256 of its text, a blank, and JSON. A torn or
+//! changed line is counted and skipped; only that record is lost.
 
 mod line;
 
@@ -13,7 +13,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-/// A journal that is open for appending. No other process can open it meanwhile, where the file system has locks.
+/// A journal that is open for appending. If the file system supports locks, no other process can open it at the same time.
 #[derive(Debug)]
 pub struct Journal {
     path: PathBuf,
@@ -21,25 +21,25 @@ pub struct Journal {
     file: Mutex<File>,
 }
 
-/// What a journal holds.
+/// The contents of a journal.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Contents<T> {
-    /// In the order in which they were appended.
+    /// The records in the order in which they were appended.
     pub records: Vec<T>,
-    /// Lines that are torn, changed, or records of another form.
+    /// Number of lines that are torn, changed, or records of another form.
     pub damaged: usize,
 }
 
 impl Journal {
-    /// Opens a journal of this `kind`, a line of text, or begins one, and reads what it holds. A last line that was torn is ended.
+    /// Opens or creates a journal of this `kind`, a line of text, and reads its contents. If the last line is torn, it is terminated.
     ///
     /// # Errors
-    /// [`ErrorKind::WouldBlock`] if another process has it open, [`ErrorKind::AlreadyExists`] for a link, a folder or a file that is no
-    /// journal of this kind, which stays as it is, and what the system says.
+    /// [`ErrorKind::WouldBlock`] if another process has it open; [`ErrorKind::AlreadyExists`] for a link, a folder, or a file that is
+    /// not a journal of this kind, which is left unchanged; and the system's errors.
     pub fn open<T: DeserializeOwned>(path: &Path, kind: &str) -> io::Result<(Journal, Contents<T>)> {
         let mut file = locked(path, kind)?;
         let contents = records(&file)?;
-        // Also of one that was interrupted at once, which has a part of the first line.
+        // This includes a journal that was interrupted at once, which contains only a part of the first line.
         if file.metadata()?.len() <= kind.len() as u64 {
             begin(&mut file, kind)?;
         } else {
@@ -54,59 +54,59 @@ impl Journal {
         Ok((Journal { path, kind, file: Mutex::new(file) }, contents))
     }
 
-    /// Hands a record to the system at once, whole or not at all.
+    /// Writes a record to the system at once, completely or not at all.
     ///
     /// # Errors
-    /// [`ErrorKind::InvalidData`] of a record that is not JSON, and what the system says.
+    /// [`ErrorKind::InvalidData`] for a record that is not JSON, and the system's errors.
     pub fn append(&self, record: &impl Serialize) -> io::Result<()> {
         let line = line::of(record)?;
         let mut file = self.writing();
         let end = file.seek(SeekFrom::End(0))?;
         file.write_all(&line).inspect_err(|_| {
-            // Else the next line would be torn, too.
+            // Otherwise the next line would be torn as well.
             let _ = file.set_len(end);
         })
     }
 
-    /// Forgets all records.
+    /// Removes all records.
     ///
     /// # Errors
-    /// What the system says.
+    /// The system's errors.
     pub fn clear(&self) -> io::Result<()> {
         begin(&mut self.writing(), &self.kind)
     }
 
-    /// Holds back every write while the guard lives, so that the process may end without tearing a line.
+    /// Blocks every write while the guard exists, so that the process may end without tearing a line.
     pub fn writing(&self) -> MutexGuard<'_, File> {
         self.file.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Where it is.
+    /// Its path.
     pub fn path(&self) -> &Path {
         &self.path
     }
 }
 
 impl Drop for Journal {
-    /// Closing would not do: a process that was forked meanwhile has the file open, too.
+    /// Closing is not sufficient: a process that was forked in the meantime also has the file open.
     fn drop(&mut self) {
         let _ = self.writing().unlock();
     }
 }
 
-/// What a journal of this `kind` holds, which may be open elsewhere, but not on Windows.
+/// Reads a journal of this `kind`, which may be open elsewhere, except on Windows.
 ///
 /// # Errors
-/// [`ErrorKind::AlreadyExists`] if it is of another kind, and what the system says.
+/// [`ErrorKind::AlreadyExists`] if it is of another kind, and the system's errors.
 pub fn read<T: DeserializeOwned>(path: &Path, kind: &str) -> io::Result<Contents<T>> {
     let mut file = File::open(path)?;
     require_kind(&mut file, kind)?;
     records(&file)
 }
 
-/// Removes a journal of this `kind` that no process has open; what is none stays.
+/// Removes a journal of this `kind` that no process has open; other files are left unchanged.
 pub fn remove(path: &Path, kind: &str) {
-    // While it is locked, nobody else begins to write. If it cannot be removed, it is taken up again or begun anew.
+    // While it is locked, no other process starts to write. If it cannot be removed, it will be reused or started anew.
     if path.exists()
         && let Ok(file) = locked(path, kind)
     {
@@ -115,18 +115,18 @@ pub fn remove(path: &Path, kind: &str) {
     }
 }
 
-/// A file of this `kind`, or a new one, that no other process has open.
+/// Opens or creates a file of this `kind` that no other process has open, and locks it.
 fn locked(path: &Path, kind: &str) -> io::Result<File> {
     if fs::symlink_metadata(path).is_ok_and(|found| !found.is_file()) {
         return Err(of_another_kind());
     }
-    // Not in the mode for appending, in which Windows cannot shorten a file.
+    // Not in append mode, in which Windows cannot truncate a file.
     let mut file = OpenOptions::new().read(true).write(true).create(true).truncate(false).open(path)?;
     if let Err(fs::TryLockError::WouldBlock) = file.try_lock() {
         return Err(in_use());
     }
     if !is_at(path, &file) {
-        // It was removed or replaced between opening and locking.
+        // The file was removed or replaced between opening and locking.
         return Err(in_use());
     }
     require_kind(&mut file, kind)?;
@@ -139,7 +139,7 @@ fn begin(file: &mut File, kind: &str) -> io::Result<()> {
     writeln!(file, "{kind}")
 }
 
-/// Whether this is what stands there, and no link to it.
+/// Whether the path refers to this file itself, and not to a link to it.
 #[cfg(unix)]
 fn is_at(path: &Path, file: &File) -> bool {
     use std::os::unix::fs::MetadataExt as _;
@@ -148,20 +148,20 @@ fn is_at(path: &Path, file: &File) -> bool {
     matches!((there, own), (Ok(there), Ok(own)) if there == own)
 }
 
-/// What is open cannot be replaced.
+/// On these systems an open file cannot be replaced.
 #[cfg(not(unix))]
 fn is_at(_path: &Path, _file: &File) -> bool {
     true
 }
 
-/// Reads the first line, of which one that was interrupted at once has a part.
+/// Checks the first line, of which an interrupted journal may contain only a part.
 fn require_kind(file: &mut File, kind: &str) -> io::Result<()> {
     let mut first = Vec::new();
     file.take(kind.len() as u64 + 1).read_to_end(&mut first)?;
     if format!("{kind}\n").as_bytes().starts_with(&first) { Ok(()) } else { Err(of_another_kind()) }
 }
 
-/// All lines from here on.
+/// Reads all lines from the current position.
 fn records<T: DeserializeOwned>(file: &File) -> io::Result<Contents<T>> {
     let reader = BufReader::new(file);
     let mut contents = Contents { records: Vec::new(), damaged: 0 };
@@ -214,7 +214,7 @@ mod tests {
         assert_eq!(open(&path).1.records, [2.0]);
     }
 
-    /// Cut anywhere, by a kill, a journal loses the record that is cut and no other, before or after.
+    /// A journal that is cut anywhere, as by a kill, loses the record that is cut and no other, before or after.
     #[test]
     fn a_torn_line_costs_only_itself() {
         let folder = tempfile::tempdir().expect("a folder");
@@ -230,7 +230,7 @@ mod tests {
         for cut in 0..whole.len() {
             fs::write(&path, &whole[..cut]).expect("a file");
             let (journal, found) = open(&path);
-            // Without its end a line may still be whole.
+            // A line may be complete without its line end.
             let kept = ends[1..].iter().filter(|&&end| cut >= end).count();
             assert_eq!(found.records, &[1.0, 2.0][..kept], "cut at {cut}");
             journal.append(&3.0).expect("a line");
@@ -288,7 +288,7 @@ mod tests {
         }
     }
 
-    /// As a pool of processes does that is made while a journal is open.
+    /// This happens if a pool of processes is created while a journal is open.
     #[cfg(unix)]
     #[test]
     fn what_another_process_inherited_is_unlocked() {

@@ -1,16 +1,16 @@
-//! One line: the SHA-256 of a record's text, by which a changed line is known, and the text, JSON.
+//! One line: a record as JSON, preceded by the SHA-256 of its text, which reveals changes.
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use sha2::{Digest as _, Sha256};
 
-/// With its end.
+/// The line of a record, including its line end.
 pub(crate) fn of(record: &impl Serialize) -> serde_json::Result<Vec<u8>> {
     let json = serde_json::to_vec(record)?;
     Ok([checksum(&json).as_bytes(), b" ", &json, b"\n"].concat())
 }
 
-/// Without its end; none if it is torn, changed, or a record of another form.
+/// The record of a line without its line end; `None` if it is torn, changed, or a record of another form.
 pub(crate) fn read<T: DeserializeOwned>(line: &[u8]) -> Option<T> {
     let space = line.iter().position(|&byte| byte == b' ')?;
     let (written, json) = (&line[..space], &line[space + 1..]);
@@ -28,7 +28,7 @@ mod tests {
     use super::*;
 
     proptest! {
-        /// A byte changed, lost or added: what is read is what was written, or nothing.
+        /// After changing, removing or adding a byte, reading returns the written record or nothing.
         #[test]
         fn a_changed_line_is_never_believed(
             record in (any::<f64>().prop_filter("JSON has no others", |value| value.is_finite()), ".*"),

@@ -23,7 +23,7 @@ fn main() -> Result<(), KinematicsError> {
     let limits: Vec<f64> = robot.joints().iter().map(Joint::upper).collect();
     println!("{}: {n} joints, upper limits {limits:?}", robot.name());
 
-    // 0.2 m/s along x for two seconds; the joints have no other wish.
+    // 0.2 m/s along x for two seconds; no secondary joint velocity is wanted.
     let (task, pull, time_step) = (dvector![0.2, 0.0, 0.0], DVector::zeros(n), 0.01);
     let (mut workspace, mut control) = (Workspace::new(), ResolvedRate::new(1e-3)?);
     let (mut jacobian, mut velocity) = (Matrix3xX::zeros(n), DVector::zeros(n));

@@ -5,10 +5,10 @@ use crate::{
     urdf::{Element, UrdfProblem},
 };
 
-/// Largest coordinate of a configuration that can be placed: positions and their squares stay finite.
+/// Largest coordinate of a configuration for which positions and their squares stay finite.
 pub(crate) const FARTHEST: f64 = 1e100;
 
-/// Why a robot cannot be built or evaluated.
+/// Reasons why a robot cannot be built or evaluated.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum KinematicsError {
@@ -19,7 +19,7 @@ pub enum KinematicsError {
         line: u32,
         /// Column of the fault, counted from 1.
         column: u32,
-        /// What the XML reader says.
+        /// The XML reader's message.
         message: String,
     },
     /// The URDF breaks a rule.
@@ -35,7 +35,7 @@ pub enum KinematicsError {
     UnknownLink {
         /// The requested name.
         name: String,
-        /// Link names like it, nearest first.
+        /// Similar link names, nearest first.
         near: Vec<String>,
     },
     /// No active joint has this name.
@@ -43,13 +43,13 @@ pub enum KinematicsError {
     UnknownJoint {
         /// The requested name.
         name: String,
-        /// Names of active joints like it, nearest first.
+        /// Similar names of active joints, nearest first.
         near: Vec<String>,
     },
-    /// A configuration has not one value for each active joint.
+    /// The number of values differs from the number of active joints.
     #[error("the configuration has {found} values, the robot has {expected} active joints; give one value each")]
     ConfigurationLength {
-        /// The length given.
+        /// The given length.
         found: usize,
         /// The number of active joints.
         expected: usize,
@@ -59,25 +59,25 @@ pub enum KinematicsError {
     NotFinite {
         /// The name of the first such joint.
         joint: String,
-        /// Its place in the configuration, counted from 0.
+        /// Its index in the configuration, counted from 0.
         index: usize,
         /// The value itself.
         value: f64,
     },
-    /// A coordinate so large that positions computed from it could overflow.
+    /// A coordinate is so large that positions computed from it could overflow.
     #[error("joint \"{joint}\" (value {index}): {value:e} is too far, {FARTHEST:e} is the most")]
     TooFar {
         /// The name of the first such joint.
         joint: String,
-        /// Its place in the configuration, counted from 0.
+        /// Its index in the configuration, counted from 0.
         index: usize,
         /// The value itself, in radians or metres.
         value: f64,
     },
-    /// A Jacobian to be filled has not one column for each active joint.
+    /// The number of columns of a Jacobian differs from the number of active joints.
     #[error("the Jacobian has {found} columns, the robot has {expected} active joints; give one column each")]
     JacobianColumns {
-        /// The number of columns given.
+        /// The given number of columns.
         found: usize,
         /// The number of active joints.
         expected: usize,
@@ -87,41 +87,41 @@ pub enum KinematicsError {
     InBatch {
         /// The column of the first such configuration, counted from 0.
         index: usize,
-        /// What is wrong with it.
+        /// The reason.
         reason: Box<KinematicsError>,
     },
-    /// Jacobians to be filled side by side have not one column for each active joint in each configuration.
+    /// Jacobians side by side do not have one column for each active joint in each configuration.
     #[error(
         "the Jacobians have {found} columns together; give {} ({configurations} configurations of {joints} active joints)",
         configurations * joints
     )]
     BatchColumns {
-        /// The number of columns given.
+        /// The given number of columns.
         found: usize,
         /// The number of configurations.
         configurations: usize,
         /// The number of active joints.
         joints: usize,
     },
-    /// Velocities have not one value for each active joint in each configuration.
+    /// Velocities do not have one value for each active joint in each configuration.
     #[error(
         "the velocities have the shape ({}, {}); give ({}, {}), active joints by configurations",
         found.0, found.1, expected.0, expected.1
     )]
     VelocitiesShape {
-        /// Rows and columns given.
+        /// The given numbers of rows and columns.
         found: (usize, usize),
         /// Active joints and configurations.
         expected: (usize, usize),
     },
-    /// Collision geometry was requested, and the resolver does not have these meshes.
+    /// Collision geometry was requested, but the resolver lacks these meshes.
     #[error(
         "{} mesh(es) are missing: {}; resolve them, or leave them out on purpose",
         meshes.len(),
         meshes.iter().map(|(link, file)| format!("\"{file}\" of link \"{link}\"")).collect::<Vec<_>>().join(", ")
     )]
     MissingMeshes {
-        /// Links, and the files as the URDF names them.
+        /// Pairs of a link and a file, as the URDF names it.
         meshes: Vec<(String, String)>,
     },
     /// A mesh is not a shape.
@@ -131,16 +131,16 @@ pub enum KinematicsError {
         link: String,
         /// The file, as the URDF names it.
         filename: String,
-        /// What is wrong with it.
+        /// Description of the fault.
         reason: String,
     },
-    /// The damping of a resolved-rate step is not a number from 0 up.
+    /// The damping of resolved-rate control is not a finite number of at least 0.
     #[error("damping {damping}: it must be a finite number, 0 or more")]
     Damping {
-        /// The damping given.
+        /// The given damping.
         damping: f64,
     },
-    /// Jacobian, task velocity, pull and joint velocity do not fit together.
+    /// The shapes of Jacobian, task velocity, pull and joint velocity do not match.
     #[error(
         "a task of {task} rows and a velocity of {velocity} joints do not fit a Jacobian of shape ({}, {}) and a pull of {pull} joints",
         jacobian.0, jacobian.1
@@ -152,11 +152,11 @@ pub enum KinematicsError {
         task: usize,
         /// Rows of the null-space pull.
         pull: usize,
-        /// Rows of the joint velocity to be written.
+        /// Rows of the joint velocity to be filled.
         velocity: usize,
     },
-    /// The damped task has no solution: the task's rows depend on one another and there is no damping, or a value is
-    /// not finite.
+    /// The damped task has no solution: the task's rows are linearly dependent and there is no damping, or a value
+    /// is not finite.
     #[error("the task is singular with damping {damping}; give a positive damping, and finite values")]
     SingularTask {
         /// The damping.

@@ -1,8 +1,8 @@
 //! Forward kinematics, Jacobians and self-collision of robots described by URDF.
 //!
-//! Conventions, everywhere: poses are in the root link's frame; metres and radians; Jacobian rows are vx vy vz wx wy
-//! wz at the frame's origin, in root axes; configurations and columns follow the active joints in document order. What
-//! takes a [`Workspace`] allocates nothing after the first call with it.
+//! Conventions everywhere: poses are in the root link's frame; metres and radians; Jacobian rows are vx vy vz wx wy wz
+//! at the frame's origin, in root axes; configurations and columns follow the active joints in document order.
+//! Functions that take a [`Workspace`] allocate nothing after the first call with it.
 //!
 //! ```
 //! use kinematics::{RobotModel, Workspace};
@@ -33,8 +33,9 @@
 //! # Ok::<(), kinematics::KinematicsError>(())
 //! ```
 //!
-//! Where to look: `urdf` text to tags; `model` tags to a robot; `nodes` the motion of one link; `forward` poses and
-//! Jacobians; `collision` what touches (a feature, on by default); `resolved_rate` joint velocities for a task.
+//! Modules: `urdf` reads text into tags; `model` builds a robot from them; `nodes` holds the motion of one link;
+//! `forward` computes poses and Jacobians; `collision` finds touching links (a feature, on by default);
+//! `resolved_rate` computes joint velocities for a task.
 
 #![allow(clippy::inline_always, reason = "vector dispatch compiles for a newer machine only what is inlined into it")]
 
@@ -56,7 +57,7 @@ pub use model::{Attachment, CollisionShape, Inertial, Joint, JointMotion, LinkId
 pub use resolved_rate::ResolvedRate;
 pub use urdf::{Element, Geometry, JointKind, UrdfProblem, UrdfWarning};
 
-/// The program of the README, compiled.
+/// Compiles the program in the README.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;

@@ -1,12 +1,12 @@
-/// How many proposals an error makes.
+/// Number of names that an error proposes.
 const PROPOSALS: usize = 3;
 
-/// Length in bytes up to which names are compared. Comparing takes as many steps as the product of two lengths, and
-/// a single mistyped letter is unlikely in a name this long.
+/// Length in bytes up to which names are compared. Comparing takes time proportional to the product of two lengths,
+/// and a single mistyped letter is unlikely in a name this long.
 const LONGEST_NAME: usize = 64;
 
-/// The names nearest to `wanted` by edit distance, nearest first, ties in the order given; case does not count.
-/// Names that share nothing with `wanted` are left out, and so are very long ones.
+/// The names nearest to `wanted` by edit distance, nearest first, ties in the given order, ignoring case. Names
+/// that share nothing with `wanted` are omitted, and so are very long ones.
 pub(crate) fn near_names<'n>(wanted: &str, names: impl Iterator<Item = &'n str>) -> Vec<String> {
     if wanted.len() > LONGEST_NAME {
         return Vec::new();
@@ -37,7 +37,7 @@ fn edit_distance(from: &str, to: &str) -> usize {
     row[to.len()]
 }
 
-/// The end of an error message: what was perhaps meant.
+/// The end of an error message, which proposes names.
 pub(crate) fn proposal(near: &[String]) -> String {
     if near.is_empty() { String::new() } else { format!("; did you mean {}?", near.join(", ")) }
 }

@@ -2,11 +2,11 @@ use nalgebra::{Cholesky, DMatrix, DMatrixView, DVector, DVectorView, DVectorView
 
 use crate::KinematicsError;
 
-/// A pivot of J Jᵀ + λ² I below this share of its diagonal entry is rounding.
+/// A pivot of J Jᵀ + λ² I below this share of its diagonal entry is a rounding error.
 const SINGULAR: f64 = 1e-13;
 
-/// Damped resolved-rate control: joint velocities that realise a task velocity, and follow a second wish as far as the
-/// task leaves them free.
+/// Damped resolved-rate control: joint velocities that realise a task velocity, and follow a secondary joint velocity as far as
+/// the task leaves them free.
 ///
 /// q̇ = J⁺ v + (I − J⁺ J) z with the damped pseudo-inverse J⁺ = Jᵀ (J Jᵀ + λ² I)⁻¹. The task may be any number m of
 /// rows: one hand (3 or 6), several points stacked (3 each).
@@ -19,9 +19,9 @@ pub struct ResolvedRate {
 }
 
 impl ResolvedRate {
-    /// Control with damping λ, in the Jacobian's unit (metres per radian). The task's part of the joint velocity is at most
-    /// |v − J z| / (2λ), and where J is small beside λ the task is met less exactly. 0 is no damping: near a singular posture the
-    /// joint velocity then grows without bound.
+    /// Control with damping λ, in the Jacobian's unit (metres per radian). The task's part of the joint velocity is at most |v −
+    /// J z| / (2λ); where J is small compared with λ, the task is realised less exactly. 0 means no damping: the joint velocity
+    /// then grows without bound near a singular posture.
     ///
     /// # Errors
     /// [`KinematicsError::Damping`].
@@ -32,12 +32,12 @@ impl ResolvedRate {
         Ok(ResolvedRate { damping, gram: DMatrix::zeros(0, 0), residual: DVector::zeros(0) })
     }
 
-    /// Writes q̇ (n) into `velocity`, for `jacobian` J (m, n) (a reference to a matrix of 3, 6 or any rows),
-    /// the wished task velocity `task` v (m) and the wished
-    /// joint velocity `pull` z (n), all per second. Allocates only when m changes.
+    /// Writes q̇ (n) into `velocity`, for `jacobian` J (m, n) (a reference to a matrix with 3, 6 or any number of rows), the
+    /// desired task velocity `task` v (m) and the desired joint velocity `pull` z (n), all per second. Allocates only when m
+    /// changes.
     ///
     /// # Errors
-    /// [`KinematicsError::TaskShape`] or [`KinematicsError::SingularTask`]; `velocity` is of no meaning then.
+    /// [`KinematicsError::TaskShape`] or [`KinematicsError::SingularTask`]; then `velocity` is meaningless.
     pub fn velocity<'j>(
         &mut self,
         jacobian: impl Into<DMatrixView<'j, f64>>,
@@ -55,7 +55,7 @@ impl ResolvedRate {
                 velocity: velocity.len(),
             });
         }
-        // v − J z, which the pseudo-inverse takes at once: q̇ = z + J⁺ (v − J z).
+        // v − J z: q̇ = z + J⁺ (v − J z) needs the pseudo-inverse only once.
         if self.residual.len() != m {
             (self.residual, self.gram) = (DVector::zeros(m), DMatrix::zeros(m, m));
         }
@@ -70,7 +70,7 @@ impl ResolvedRate {
 
     /// residual ← (J Jᵀ + λ² I)⁻¹ residual.
     fn solve(&mut self, jacobian: DMatrixView<'_, f64>) -> Result<(), KinematicsError> {
-        // The factorisation works in place, but only in a matrix that it owns.
+        // The factorisation works in place, but requires ownership of the matrix.
         let mut gram = std::mem::replace(&mut self.gram, DMatrix::zeros(0, 0));
         gram.fill(0.0);
         gram.fill_diagonal(self.damping * self.damping);
@@ -81,7 +81,7 @@ impl ResolvedRate {
             self.residual = DVector::zeros(0);
             return Err(KinematicsError::SingularTask { damping: self.damping });
         };
-        // Rounding may leave a singular matrix a pivot, but none that is more than a small share of its diagonal.
+        // Rounding may leave a nonzero pivot in a singular matrix, but only a small share of its diagonal.
         let lower = cholesky.l_dirty();
         let left =
             |row: usize| lower[(row, row)].powi(2) > SINGULAR * lower.view((row, 0), (1, row + 1)).norm_squared();

@@ -1,4 +1,4 @@
-//! After the first call with a workspace, no question about a configuration allocates.
+//! After the first call with a workspace, no computation on a configuration allocates.
 #![allow(clippy::unwrap_used, reason = "a robot that does not load fails the test")]
 
 use kinematics::{ResolvedRate, RobotModel, SelfCollision, Workspace};
@@ -6,7 +6,7 @@ use nalgebra::{DMatrix, DVector, Matrix3xX, Matrix6xX};
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 
 fn allocations(mut of: impl FnMut()) -> u64 {
-    of(); // The first call may make room.
+    of(); // The first call may allocate.
     allocation_counter::measure(of).count_total
 }
 
@@ -48,7 +48,7 @@ fn nothing_is_allocated_per_call() {
             .unwrap();
         chain.jacobians(several.as_view(), &mut in_chain, &mut jacobians).unwrap();
         std::hint::black_box(chain.poses(several.as_view(), &mut in_chain).unwrap());
-        // One configuration again, in the same workspaces.
+        // A single configuration again, in the same workspaces.
         std::hint::black_box(robot.forward_kinematics(q.as_view(), &mut workspace).unwrap().pose(hand));
         std::hint::black_box(chain.pose(q.as_view(), &mut in_chain).unwrap());
     });

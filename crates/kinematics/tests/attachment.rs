@@ -1,10 +1,10 @@
-//! A robot's tree, taken apart and put together again by hand.
+//! Composes a robot's poses by hand from its tree.
 use crate::random_tree::tree;
 use kinematics::{Attachment, JointMotion, MotionKind, RobotModel, Workspace};
 use nalgebra::{DVector, IsometryMatrix3, Rotation3, Translation3, Vector3};
 use proptest::prelude::*;
 
-/// What the joint does at a configuration.
+/// The joint's motion at a configuration.
 fn motion(joint: &JointMotion, q: &DVector<f64>) -> IsometryMatrix3<f64> {
     let value = joint.multiplier * q[joint.column] + joint.offset;
     match joint.kind {
@@ -17,7 +17,7 @@ fn motion(joint: &JointMotion, q: &DVector<f64>) -> IsometryMatrix3<f64> {
     }
 }
 
-/// All poses, from nothing but attachments.
+/// All poses, computed from attachments alone.
 fn by_hand(robot: &RobotModel, q: &DVector<f64>) -> Vec<IsometryMatrix3<f64>> {
     let links: Vec<_> = robot.links().collect();
     let mut poses: Vec<IsometryMatrix3<f64>> = Vec::new();
@@ -73,7 +73,7 @@ proptest! {
     }
 }
 
-/// A joint about −z that is followed backwards, and one that does not move.
+/// A joint about −z that is followed with a negative multiplier, and a fixed joint.
 #[test]
 fn motions_are_as_the_file_has_them() {
     let robot = RobotModel::from_urdf(

@@ -1,10 +1,10 @@
-//! Several configurations at once give the bits of one after the other.
+//! Several configurations at once give the same bits as single ones.
 use crate::random_tree::{RandomTree, tree};
 use kinematics::{KinematicsError, RobotModel, Workspace};
 use nalgebra::{DMatrix, IsometryMatrix3, Matrix6xX};
 use proptest::prelude::*;
 
-/// A tree and configurations of it in columns: none, fewer than there are lanes, more, or multiples of them.
+/// A tree and configurations in columns: none, fewer or more than there are lanes, or multiples of them.
 fn configurations() -> impl Strategy<Value = (RandomTree, DMatrix<f64>)> {
     let value = prop_oneof![6 => -4.0..4.0_f64, 1 => Just(0.0), 1 => Just(-0.0), 1 => -1e7..1e7_f64];
     (tree(), 0..=17_usize).prop_flat_map(move |(tree, count)| {
@@ -52,7 +52,7 @@ proptest! {
         for (index, q) in q.column_iter().enumerate() {
             let mass = robot.forward_kinematics(q.as_view(), &mut one).unwrap().mass_matrix().unwrap();
             let expected = &mass * velocities.column(index);
-            // Prismatic joints of this range put links as far as 1e7 m away.
+            // Prismatic joints in this range move links as far as 1e7 m away.
             prop_assert!((momenta.column(index) - expected).amax() <= 1e-12 * mass.amax());
         }
     }
@@ -143,7 +143,7 @@ fn there_is_no_pose_beyond_the_last_configuration() {
     robot.forward_kinematics_batch(q.as_view(), &mut workspace).unwrap().pose(robot.root(), 9);
 }
 
-/// Columns of a larger matrix need not be next to each other.
+/// Columns of a larger matrix need not be contiguous.
 #[test]
 fn a_view_of_some_rows() {
     let robot = RobotModel::from_urdf(DOOR).unwrap();

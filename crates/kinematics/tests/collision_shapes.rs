@@ -1,4 +1,4 @@
-//! What a URDF says about collision shapes, what is asked of meshes, and what faults in either do.
+//! Collision shapes in a URDF, calls of the mesh resolver, and faults in either.
 use crate::two_shapes::{resolver, two_shapes};
 use kinematics::{Element, Geometry, KinematicsError, SelfCollision, UrdfProblem};
 use nalgebra::Vector3;

@@ -1,5 +1,5 @@
-//! Reference cases of real robots, computed by another library. The files are not part of this project; the folder
-//! that holds them (`kinematics/*.json` with the URDFs beside) is named by `CONFORMANCE_VECTORS`.
+//! Reference cases of real robots, computed by another library. The files are not part of this project;
+//! `CONFORMANCE_VECTORS` names the folder with them (`kinematics/*.json` next to the URDFs).
 
 use std::{
     fs,
@@ -64,7 +64,7 @@ fn same_joints(robot: &RobotModel, reference: &Value) {
     }
 }
 
-/// Largest difference in pose and Jacobian over the frames of one configuration, by every way to compute them.
+/// Largest difference in pose and Jacobian over the frames of one configuration, over all ways to compute them.
 fn difference(robot: &RobotModel, reference: &Value) -> f64 {
     let q = DVector::from_vec(numbers(&reference["q"]));
     let mut workspace = Workspace::new();
@@ -92,7 +92,7 @@ fn difference(robot: &RobotModel, reference: &Value) -> f64 {
     worst
 }
 
-/// The same with all configurations in one call.
+/// As [`difference`], with all configurations in one call.
 fn difference_of_all_at_once(robot: &RobotModel, reference: &Value) -> f64 {
     let cases = reference["configurations"].as_array().unwrap();
     let columns: Vec<_> = cases.iter().map(|case| DVector::from_vec(numbers(&case["q"]))).collect();

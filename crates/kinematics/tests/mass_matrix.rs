@@ -1,9 +1,9 @@
-//! The mass matrix: against the kinetic energy of moving links, a formula, and what files say about masses.
+//! The mass matrix, compared with the kinetic energy of moving links and a formula, and the masses in files.
 use kinematics::{Element, KinematicsError, RobotModel, UrdfProblem, Workspace};
 use nalgebra::{DMatrix, DVector, IsometryMatrix3, Matrix3, Vector3};
 use proptest::prelude::*;
 
-/// Three links that turn, turn about a skew axis, and slide; inertials are off the links' frames.
+/// Three links that rotate, rotate about a skew axis, and slide; inertials are off the links' frames.
 fn arm(inertials: [&str; 3]) -> RobotModel {
     let [a, b, c] = inertials;
     let text = format!(
@@ -29,7 +29,7 @@ fn mass_matrix(robot: &RobotModel, q: &DVector<f64>) -> DMatrix<f64> {
     robot.forward_kinematics(q.as_view(), &mut workspace).unwrap().mass_matrix().unwrap()
 }
 
-/// Poses of the frames of inertia.
+/// Poses of the inertial frames.
 fn frames(robot: &RobotModel, q: &DVector<f64>) -> Vec<IsometryMatrix3<f64>> {
     let mut workspace = Workspace::new();
     let poses = robot.forward_kinematics(q.as_view(), &mut workspace).unwrap();
@@ -65,7 +65,7 @@ proptest! {
         prop_assert!((&mass - mass.transpose()).amax() < 1e-14 && mass.clone().cholesky().is_some());
     }
 
-    /// A pendulum of two points at the ends of rods.
+    /// A double pendulum with two point masses at the ends of rods.
     #[test]
     fn a_double_pendulum(q in prop::array::uniform2(-3.0..3.0f64), m in prop::array::uniform2(0.1..5.0f64), l in prop::array::uniform2(0.1..2.0f64)) {
         let link = |mass, length| format!(r#"<inertial><origin xyz="{length} 0 0"/><mass value="{mass}"/></inertial>"#);

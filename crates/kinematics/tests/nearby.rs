@@ -1,11 +1,11 @@
-//! Links near each other: distances that go on below zero, and which way apart is.
+//! Links near each other: distances that continue below zero, and separating directions.
 use crate::two_shapes::{resolver, two_shapes};
 use kinematics::{LinkId, Nearby, RobotModel, SelfCollision, Workspace};
 use nalgebra::{DVector, Vector3, dvector};
 use proptest::prelude::*;
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 
-/// What the collision library's distances are good for, metres.
+/// Accuracy of the collision library's distances, metres.
 const EXACT: f64 = 5e-5;
 
 fn upper_body() -> (RobotModel, SelfCollision) {
@@ -61,7 +61,8 @@ proptest! {
         }
     }
 
-    /// Between the slopes to either side: they differ where the nearest place jumps from one edge to another.
+    /// The gradient is between the slopes to either side, which differ where the nearest point jumps from one
+    /// edge to another.
     #[test]
     fn the_gradient_is_the_slope(seed in any::<u64>(), way in proptest::collection::vec(-1.0..1.0f64, 22)) {
         const STEP: f64 = 1e-3;
@@ -80,7 +81,7 @@ proptest! {
     }
 }
 
-/// Shapes that reach 0.3 along x, one metre and less apart: what is found at both sides of touching.
+/// Shapes that extend 0.3 along x, up to one metre apart: results on both sides of contact.
 #[test]
 fn known_places_and_depths() {
     for (first, second) in [
@@ -104,7 +105,7 @@ fn known_places_and_depths() {
     }
 }
 
-/// A point of a link that follows another moves with the joint that is followed.
+/// A point on the link of a mimic joint moves with the followed joint.
 #[test]
 fn joints_that_follow_are_counted_where_they_belong() {
     let sphere = r#"<collision><geometry><sphere radius="0.1"/></geometry></collision>"#;
@@ -120,7 +121,7 @@ fn joints_that_follow_are_counted_where_they_belong() {
     assert!((found[0].0.distance - 0.1).abs() < EXACT && (found[0].1[0] - 3.0).abs() < 1e-9, "{found:?}");
 }
 
-/// Where there is no way out, as from the middle of a sphere, the answer is some direction or none, never a NaN.
+/// Without a way out, as at the centre of a sphere, the result is some direction or none, never NaN.
 #[test]
 fn the_very_middle_is_survived() {
     for shape in [r#"<sphere radius="0.3"/>"#, r#"<box size="1 1 1"/>"#, r#"<capsule radius="0.1" length="1"/>"#] {

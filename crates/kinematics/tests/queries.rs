@@ -1,4 +1,4 @@
-//! Questions about a robot: bad ones get a typed error, good ones follow the limits.
+//! Queries of a robot: invalid ones return a typed error, valid ones respect the limits.
 use crate::random_tree::tree;
 use kinematics::{JointKind, KinematicsError, RobotModel, Workspace};
 use nalgebra::{DVector, Matrix3xX, Matrix6xX};
@@ -82,7 +82,7 @@ proptest! {
         for (value, joint) in drawn.iter().zip(robot.joints()) {
             prop_assert!(joint.kind() != JointKind::Continuous || value.abs() <= std::f64::consts::PI);
         }
-        // The same seed gives the same bits, whichever way they are asked for.
+        // The same seed gives the same bits from both functions.
         let mut again = DVector::zeros(robot.n_joints());
         robot.random_configuration_into(&mut ChaCha8Rng::seed_from_u64(seed), again.as_view_mut()).unwrap();
         prop_assert_eq!(&again, &drawn);

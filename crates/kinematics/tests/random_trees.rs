@@ -17,8 +17,8 @@ fn link(robot: &RobotModel, index: usize) -> LinkId {
     robot.link(&format!("l{index}")).unwrap()
 }
 
-/// Axis times sine of the angle, from the antisymmetric part: exact to second order, where an arc cosine loses half of
-/// the digits.
+/// Axis times sine of the angle, from the antisymmetric part: exact to second order, whereas an arc cosine loses half
+/// of the digits.
 fn small_turn(rotation: &Rotation3<f64>) -> Vector3<f64> {
     let r = rotation.matrix();
     Vector3::new(r.m32 - r.m23, r.m13 - r.m31, r.m21 - r.m12) / 2.0
@@ -40,7 +40,7 @@ proptest! {
         }
     }
 
-    /// A link stays where it is against its parent, whatever the joints do that do not carry it.
+    /// A link's pose relative to its parent does not depend on joints that do not carry it.
     #[test]
     fn poses_compose((tree, q, step, index) in motion()) {
         let robot = RobotModel::from_urdf(&tree.urdf()).unwrap();
@@ -83,7 +83,7 @@ proptest! {
         let (link, q) = (link(&robot, index), DVector::from_vec(q));
         let chain = robot.chain(link);
         let n = robot.n_joints();
-        // What was in the matrices before must not matter.
+        // Previous contents of the matrices must not matter.
         let (mut six, mut six_chain) = (Matrix6xX::repeat(n, f64::NAN), Matrix6xX::repeat(n, f64::NAN));
         let (mut three, mut three_chain) = (Matrix3xX::repeat(n, f64::NAN), Matrix3xX::repeat(n, f64::NAN));
         let mut workspace = Workspace::new();

@@ -1,4 +1,4 @@
-//! The damped resolved-rate step against its definition.
+//! Compares the damped resolved-rate step with its definition.
 use kinematics::{KinematicsError, ResolvedRate, RobotModel, Workspace};
 use nalgebra::{DMatrix, DVector, Matrix3xX};
 use proptest::prelude::*;
@@ -29,7 +29,7 @@ proptest! {
         prop_assert!((&found - &expected).amax() < 1e-8 * (1.0 + expected.amax() / (damping * damping)));
     }
 
-    /// Its definition as a minimum: no other step has less |J q̇ − v|² + λ² |q̇ − z|².
+    /// The step is a minimum: no other step has a smaller |J q̇ − v|² + λ² |q̇ − z|².
     #[test]
     fn is_the_minimum((j, v, z, damping) in problem(), way in proptest::collection::vec(-1.0..1.0, 22)) {
         let cost = |q: &DVector<f64>| (&j * q - &v).norm_squared() + damping * damping * (q - &z).norm_squared();
@@ -64,7 +64,7 @@ fn bad_input_is_refused() {
     let flat = DMatrix::from_fn(3, 5, |_, k| k as f64);
     assert_eq!(step(0.0, &flat, &v, &z), Err(KinematicsError::SingularTask { damping: 0.0 }));
     assert!(step(0.1, &flat, &v, &z).is_ok());
-    // Rounding leaves this one a pivot.
+    // Rounding leaves a nonzero pivot in this matrix.
     let rounded = DMatrix::from_row_slice(2, 3, &[0.1, 0.2, 0.3, 0.5, 1.0, 1.5]);
     let (task, rest) = (DVector::from_vec(vec![1.0, 0.0]), DVector::zeros(3));
     assert_eq!(step(0.0, &rounded, &task, &rest), Err(KinematicsError::SingularTask { damping: 0.0 }));
@@ -72,7 +72,7 @@ fn bad_input_is_refused() {
     let broken = j.map(|value| if value == 1.0 { f64::NAN } else { value });
     assert_eq!(step(0.1, &broken, &v, &z), Err(KinematicsError::SingularTask { damping: 0.1 }));
 
-    // After a refusal the same control goes on.
+    // The same control can be used after an error.
     let mut control = ResolvedRate::new(0.0).unwrap();
     let mut velocity = DVector::zeros(5);
     assert!(control.velocity(flat.as_view(), v.as_view(), z.as_view(), velocity.as_view_mut()).is_err());

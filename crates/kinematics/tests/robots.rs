@@ -1,4 +1,4 @@
-//! The robots of this project are what their README says.
+//! The robots of this project agree with their README.
 use kinematics::{Geometry, JointKind, RobotModel, SelfCollision, Workspace};
 use nalgebra::{DVector, Matrix3xX, Point3};
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
@@ -62,7 +62,7 @@ fn the_upper_body_has_22_joints_in_groups() {
     assert!(robot.joints().iter().all(|joint| joint.lower() <= 0.0 && joint.upper() >= 0.0));
 }
 
-/// The height and the width over the upper arms that the README gives.
+/// The height and the width over the upper arms given in the README.
 #[test]
 fn the_upper_body_is_as_large_as_asimo() {
     let (robot, _) = upper_body();
@@ -101,7 +101,7 @@ fn hands_hang_at_zero_and_are_in_front_when_ready() {
     assert!((l.x - r.x).abs() < 1e-15 && (l.y + r.y).abs() < 1e-15 && (l.z - r.z).abs() < 1e-15, "{l} {r}");
 }
 
-/// The two arms are mirror images: mirrored configurations have mirrored palms, and collide alike.
+/// The two arms are mirror images: mirrored configurations have mirrored palms and the same collisions.
 #[test]
 fn left_is_right_in_the_mirror() {
     let (robot, collision) = upper_body();

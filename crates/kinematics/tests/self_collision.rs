@@ -1,11 +1,11 @@
-//! Self-collision: distances of known places, and which pairs count.
+//! Self-collision: distances at known positions, and the pairs that count.
 use crate::two_shapes::{resolver, two_shapes};
 use kinematics::{Element, KinematicsError, RobotModel, SelfCollision, UrdfProblem, Workspace};
 use nalgebra::DVector;
 
 #[test]
 fn every_pair_of_shapes_at_a_known_distance() {
-    // The shape, and how far it reaches along x.
+    // The shape, and its extent along x.
     let shapes = [
         (r#"<box size="0.4 0.6 0.8"/>"#, 0.2),
         (r#"<sphere radius="0.3"/>"#, 0.3),
@@ -31,7 +31,7 @@ fn every_pair_of_shapes_at_a_known_distance() {
     }
 }
 
-/// A cylinder lies along z: 0.5 up and down, not sideways.
+/// A cylinder's axis is z: it extends 0.5 up and down, not sideways.
 #[test]
 fn a_cylinder_is_upright() {
     let shape = r#"<cylinder radius="0.1" length="1"/>"#;
@@ -53,7 +53,7 @@ fn a_cylinder_is_upright() {
     }
 }
 
-/// A cylinder between two spheres is the capsule, to the last bit of the closed form.
+/// A cylinder between two spheres equals the capsule, to the last bit of the closed form.
 #[test]
 fn a_cylinder_between_two_spheres_is_a_capsule() {
     let tilted = r#"xyz="0.1 0.2 0.3" rpy="0.4 0.5 0.6""#;
@@ -90,7 +90,7 @@ fn a_cylinder_between_two_spheres_is_a_capsule() {
     assert_eq!(whole.pairs().count(), 1);
 }
 
-/// root – a (fixed) – b (fixed to a) – c (turns) – d (turns) – e (fixed to d), all in one place.
+/// root – a (fixed) – b (fixed to a) – c (rotates) – d (rotates) – e (fixed to d), all at the same position.
 #[test]
 fn links_that_cannot_move_or_are_joined_are_no_pair() {
     let shape = r#"<collision><geometry><sphere radius="1"/></geometry></collision>"#;
@@ -132,7 +132,7 @@ fn bad_pairs_are_refused() {
     assert_eq!(collision.disable("a", "betwen"), Err(unknown.clone()));
     let srdf = r#"<robot><disable_collisions link1="a" link2="betwen"/></robot>"#;
     assert_eq!(collision.disable_srdf(srdf), Err(unknown.clone()));
-    // A sound pair before a faulty one stays a pair.
+    // A valid pair before an invalid one stays a pair.
     let second =
         r#"<robot><disable_collisions link1="b" link2="a"/><disable_collisions link1="a" link2="betwen"/></robot>"#;
     assert_eq!(collision.disable_srdf(second), Err(unknown));

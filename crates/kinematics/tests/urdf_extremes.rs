@@ -1,4 +1,5 @@
-//! Texts that are small and slow to read, and finite numbers that overflow on the way: each is read or refused at once.
+//! Short texts that are slow to read, and finite numbers that overflow in computations: each is read or refused
+//! quickly.
 use crate::urdf_text::{LIMIT, joint, robot, single};
 use cpu_time::ThreadTime;
 use kinematics::{Element, KinematicsError, MeshShape, RobotModel, SelfCollision, UrdfProblem, Workspace};
@@ -22,7 +23,7 @@ fn very_long_names_are_not_compared() {
     assert_eq!(loaded.link(&asked).unwrap_err(), KinematicsError::UnknownLink { name: asked, near: vec![] });
 }
 
-/// Short entities that stand for long ones can make a few lines as long as a library.
+/// Short entities that stand for long ones can expand a few lines to an enormous text.
 #[test]
 fn entities_are_refused_wherever_they_are_declared() {
     let declared = |inside: &str| format!("<!DOCTYPE robot [\n{inside}\n]>\n{}", robot("a", ""));
@@ -45,14 +46,14 @@ fn tags_of_very_many_attributes_are_refused() {
     assert_eq!(refused(&of(20_000)), (Element::Robot, UrdfProblem::ManyAttributes { line: 2 }));
     assert_eq!(refused(&of(257)), (Element::Robot, UrdfProblem::ManyAttributes { line: 2 }));
     assert!(RobotModel::from_urdf(&of(256)).is_ok());
-    // What only looks like one tag with very many.
+    // Texts that only resemble one tag with many attributes.
     let many = "x=\"1\" ".repeat(300);
     for text in [format!("<![CDATA[< {many}]]>"), format!("<?note < {many}?>"), format!("<!-- < {many} -->"), many] {
         assert!(RobotModel::from_urdf(&robot("a", &format!("<note>{text}</note>"))).is_ok());
     }
 }
 
-/// A row of prismatic joints along x, the last one first in the file: each follows the one before it, or none does.
+/// A row of prismatic joints along x, in reverse order in the file; with `mimic`, each may follow the one before it.
 fn row(n: usize, mimic: impl Fn(usize) -> String) -> String {
     let links: Vec<String> = (0..=n).map(|i| format!("l{i}")).collect();
     let one = |i: usize| {
@@ -63,7 +64,7 @@ fn row(n: usize, mimic: impl Fn(usize) -> String) -> String {
     robot(&links.join(" "), &joints)
 }
 
-/// Processor time of this thread, the least of three: what else the machine does takes no part in it.
+/// Processor time of this thread, the minimum of three, which is independent of the machine's other load.
 fn seconds_to_load(text: &str) -> f64 {
     let load = || {
         let started = ThreadTime::now();
@@ -73,7 +74,7 @@ fn seconds_to_load(text: &str) -> f64 {
     (0..3).map(|_| load()).fold(f64::INFINITY, f64::min)
 }
 
-/// Walking down the chain anew for every joint takes 300 times as long.
+/// Walking down the chain again for every joint would take 300 times as long.
 #[test]
 fn a_chain_of_20_000_mimic_joints_takes_as_long_as_as_many_free_ones() {
     const N: usize = 20_000;
@@ -128,7 +129,7 @@ fn numbers_beyond_a_million_are_refused_where_sums_are_made_of_them() {
     }
 }
 
-/// Each multiplier is in range, their product is not.
+/// Each multiplier is in range, but their product is not.
 #[test]
 fn mimic_chains_that_multiply_beyond_all_bounds_are_refused() {
     let follows = |name: &str, of: &str, parent: &str, child: &str| {
@@ -174,13 +175,13 @@ fn coordinates_too_far_to_be_placed_are_refused() {
         assert_eq!(robot.forward_kinematics(q.as_view(), &mut workspace).map(|_| ()), Err(error.clone()));
         assert_eq!(chain.pose(q.as_view(), &mut workspace).map(|_| ()), Err(error.clone()));
         assert_eq!(chain.jacobian(q.as_view(), &mut workspace, &mut jacobian).map(|_| ()), Err(error));
-        // Limits can be asked about all the same.
+        // Queries of limits still work.
         assert_eq!(robot.n_beyond_limits(q.as_view()), Ok(0));
     }
 }
 
 proptest! {
-    /// What is not refused has finite poses and Jacobians.
+    /// Accepted input has finite poses and Jacobians.
     #[test]
     fn what_is_placed_is_finite(exponent in -10.0..100.0_f64, negative in any::<bool>()) {
         let robot = RobotModel::from_urdf(FAR_ROBOT).unwrap();

@@ -1,11 +1,11 @@
-//! What is odd in URDF files and must load all the same, one row each, with the motion it must give.
+//! Unusual URDF files that must load, one per row, with the resulting motion.
 use std::f64::consts::FRAC_PI_2;
 
 use crate::urdf_text::{LIMIT, ORIGIN, joint, robot, robot_of_version, single};
 use kinematics::{Element, JointKind, RobotModel, UrdfWarning, Workspace};
 use nalgebra::{DVector, IsometryMatrix3, Rotation3, Translation3, Vector3};
 
-/// The pose of a link, all coordinates at `q`.
+/// The pose of a link with all coordinates at `q`.
 fn pose(robot: &RobotModel, link: &str, q: f64) -> IsometryMatrix3<f64> {
     let q = DVector::from_element(robot.n_joints(), q);
     let mut workspace = Workspace::new();

@@ -1,9 +1,9 @@
-//! Mimic joints in every order and of every kind, and those that follow nothing.
+//! Mimic joints of every kind and in every order, and invalid ones.
 use crate::urdf_text::{LIMIT, double, joint, robot};
 use kinematics::{Element, KinematicsError, RobotModel, UrdfProblem, Workspace};
 use nalgebra::{DVector, Matrix6xX, Rotation3, Vector3};
 
-/// A revolute joint about z; `mimic` is what stands in its `<mimic>`, if anything.
+/// A revolute joint about z; `mimic` holds the attributes of its `<mimic>`, if any.
 fn turning(name: &str, parent: &str, child: &str, mimic: &str) -> String {
     let mimic = if mimic.is_empty() { String::new() } else { format!("<mimic {mimic}/>") };
     joint(name, "revolute", parent, child, &format!(r#"<axis xyz="0 0 1"/>{LIMIT}{mimic}"#))
@@ -22,7 +22,7 @@ fn odd_mimic_joints_that_load() {
     let sibling = turning("ja", "a", "c", &twice("jz")) + &free("jz", "a", "b");
     let sliding = joint("j1", "prismatic", "a", "b", r#"<axis xyz="0 0 1"/><limit lower="-1" upper="2"/>"#);
     let half = |offset: &str| format!(r#"<mimic joint="j1" multiplier="0.5" {offset}/>"#);
-    // The robot, the link that is looked at, how far it has turned, and how fast it turns.
+    // The robot, the examined link, its angle, and its angular velocity.
     let cases = [
         ("plain", double("revolute", "revolute", &half(r#"offset="0.25""#)), "c", 1.5 * Q + 0.25, 1.5),
         ("no multiplier", double("revolute", "revolute", r#"<mimic joint="j1"/>"#), "c", 2.0 * Q, 2.0),

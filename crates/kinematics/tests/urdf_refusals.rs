@@ -1,4 +1,4 @@
-//! What URDF forbids, one row each: the error with the link or joint it must name.
+//! Violations of URDF's rules, one per row, with the error and the link or joint that it must name.
 use crate::urdf_text::{LIMIT, joint, robot, robot_of_version, single};
 use Element::{Joint, Link, Robot, UnnamedLink};
 use kinematics::{Element, KinematicsError, RobotModel, UrdfProblem};

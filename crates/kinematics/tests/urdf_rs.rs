@@ -1,4 +1,4 @@
-//! Robots that the crate urdf-rs has read: the same robots, and the same refusals, as from the text itself.
+//! Robots read by the crate urdf-rs: the same robots and the same errors as from the text itself.
 use crate::random_tree::tree;
 use crate::urdf_text::{LIMIT, double, joint, robot, robot_of_version, single};
 use kinematics::{Element, KinematicsError, RobotModel, UrdfProblem};
@@ -9,7 +9,7 @@ fn through_urdf_rs(text: &str) -> Result<RobotModel, KinematicsError> {
     RobotModel::try_from(&urdf_rs::read_from_string(text).unwrap())
 }
 
-/// All of a robot, to the last bit: names, tree, origins, axes, limits, mimic joints, shapes.
+/// Compares robots to the last bit: names, tree, origins, axes, limits, mimic joints, shapes.
 fn same_robot(text: &str) {
     let (ours, theirs) = (RobotModel::from_urdf(text).unwrap(), through_urdf_rs(text).unwrap());
     assert_eq!(format!("{theirs:?}"), format!("{ours:?}"));
@@ -53,7 +53,7 @@ fn every_shape_and_every_version() {
             same_robot(&robot_of_version(version, "a b", &joint("j", "prismatic", "a", "b", inside)));
         }
     }
-    // Turned into angles and back, a quaternion keeps all but its last digits.
+    // A quaternion converted to angles and back loses only its last digits.
     let turned = r#"<origin xyz="1 2 3" quat_xyzw="0.1 0.2 0.3 0.4"/>"#;
     let text = robot_of_version("version=\"1.1\"", "a b", &joint("j", "fixed", "a", "b", turned));
     let origin = |robot: RobotModel| robot.attachment(robot.link("b").unwrap()).unwrap().origin.to_homogeneous();
@@ -61,7 +61,7 @@ fn every_shape_and_every_version() {
     assert!((ours - theirs).amax() < 1e-15);
 }
 
-/// What urdf-rs lets pass is refused with the words that the text would get.
+/// Faults that urdf-rs accepts are refused with the same errors as for the text.
 #[test]
 fn the_same_refusals() {
     let limited = |inside: &str| single("revolute", &format!("{LIMIT}{inside}"));
@@ -119,7 +119,7 @@ fn the_same_refusals() {
     }
 }
 
-/// Nobody knows whether there was a `<limit>`; a robot that is locked by an oversight is worse than a refusal.
+/// A missing `<limit>` cannot be distinguished from one of zeros; a robot that is locked by mistake is worse than an error.
 #[test]
 fn a_limit_of_zeros_alone_counts_as_missing() {
     let text = single("revolute", r#"<limit lower="0" upper="0" effort="0" velocity="0"/>"#);
@@ -133,7 +133,8 @@ fn a_limit_of_zeros_alone_counts_as_missing() {
     assert!(RobotModel::try_from(&read).is_ok());
 }
 
-/// Why texts have a reader of their own (docs/decisions/kinematics-urdf-reader.md). When one of these changes, the page does.
+/// Reasons for a separate reader of texts (docs/decisions/kinematics-urdf-reader.md). If one of these results changes, that
+/// page must change.
 #[test]
 fn what_urdf_rs_makes_of_texts() {
     let reads = |text: &str| urdf_rs::read_from_string(text).is_ok();

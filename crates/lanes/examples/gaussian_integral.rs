@@ -1,11 +1,11 @@
-//! Integrates e^−x² in the vector registers of the processor at hand, and compares the bits with plain numbers.
+//! Integrates e^−x² in vector registers of the processor at hand, and compares the bits with scalar code.
 
 #![allow(clippy::print_stdout, reason = "a program")]
 
 use lanes::{LANES, Lanes, Register, exp, total};
 use pulp::{Arch, Simd, WithSimd};
 
-/// Σ e^−x² over groups of eight; also returns how many numbers a register holds.
+/// Σ e^−x² over groups of eight; also returns the number of lanes of a register.
 struct GaussianSum<'a>(&'a [Lanes]);
 
 impl WithSimd for GaussianSum<'_> {

@@ -1,11 +1,10 @@
 use pulp::WithSimd;
 
-/// Runs an operation compiled for AVX2 where the machine has it. Not for AVX-512, which `pulp` would choose when some
-/// other crate of the program asks for it: loops over columns of four only pay shuffles for wider
-/// registers.
+/// Runs an operation compiled for AVX2 if the processor has it. It does not use AVX-512, which `pulp` would choose if
+/// another crate of the program enables it: for loops over columns of four, wider registers only add shuffles.
 ///
-/// An operation is a struct, not a closure: closures that borrow are called through a shim that is compiled for the
-/// oldest machine. For the same reason all that it calls is `#[inline(always)]`.
+/// An operation is a struct, not a closure: closures with borrows are called through a shim that is compiled for the
+/// oldest processor. For the same reason every function that it calls is `#[inline(always)]`.
 #[inline]
 pub fn dispatch_avx2<Op: WithSimd>(operation: Op) -> Op::Output {
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]

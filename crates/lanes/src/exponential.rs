@@ -1,14 +1,14 @@
-//! An exponential without a call or a branch.
+//! An exponential without calls or branches.
 //!
 //! With n = round(x/ln 2) and r = x − n ln 2, |r| ≤ ln 2 / 2, it is 2ⁿ times the Taylor polynomial of degree 13, whose
-//! first missing term is below 5e-18. Two orders of evaluation are offered, since they suit two uses.
+//! first omitted term is below 5e-18. There are two orders of evaluation for two uses.
 
 use crate::Number;
 
-/// The least x whose exponential is a normal number worth its bits, or rather the number before it: −708.
+/// The number just below −708, the least x whose exponential is normal and accurate.
 const BELOW_SMALLEST: f64 = -708.000_000_000_000_1;
 
-/// 1.5 · 2⁵²: adding it rounds to an integer, which then stands in the low bits.
+/// 1.5 · 2⁵²: adding it rounds to an integer, which is then in the low bits.
 const ROUND: f64 = 6_755_399_441_055_744.0;
 
 /// ln 2 in two parts; the first has so few bits that its multiples are exact.
@@ -30,10 +30,10 @@ const INVERSE_FACTORIALS: [f64; 12] = [
     1.0 / 6_227_020_800.0,
 ];
 
-/// e^x to about one unit in the last place, 0 below −708 (or for NaN); `x` must be under 709.
+/// e^x to about one unit in the last place, 0 below −708 (or for NaN); `x` must be below 709.
 ///
-/// For a few numbers whose exponentials are waited for: terms are summed in pairs, with fused multiply-add, so that few
-/// operations depend on each other.
+/// For a few numbers whose latency matters: terms are summed in pairs, with fused multiply-add, so that few operations
+/// depend on each other.
 #[inline(always)]
 pub fn exp<T: Number>(x: T) -> T {
     let (r, power) = reduced(x);
@@ -43,15 +43,15 @@ pub fn exp<T: Number>(x: T) -> T {
     or_zero(x, (tail.mul_add(r2, r) + 1.0) * power)
 }
 
-/// Four terms of the polynomial, from coefficient `k` on, over their lowest power of r.
+/// Four terms of the polynomial, from coefficient `k` on, divided by their lowest power of r.
 #[inline(always)]
 fn four_terms<T: Number>(r: T, r2: T, k: usize) -> T {
     let f = &INVERSE_FACTORIALS[k..k + 4];
     r.mul_add(r.like(f[3]), r.like(f[2])).mul_add(r2, r.mul_add(r.like(f[1]), r.like(f[0])))
 }
 
-/// The same for long rows of numbers, which the compiler works on several at a time: fewer operations, each waiting for
-/// the one before, and none fused. The last bit may differ from [`exp`]'s.
+/// The exponential for long rows of numbers, which the compiler vectorizes: fewer operations, each dependent on the
+/// previous one, without fused multiply-add. The last bit may differ from [`exp`]'s.
 #[inline(always)]
 pub fn exp_in_bulk(x: f64) -> f64 {
     let (r, power) = reduced(x);
@@ -62,7 +62,7 @@ pub fn exp_in_bulk(x: f64) -> f64 {
     or_zero(x, (1.0 + (r + r * r * tail)) * power)
 }
 
-/// r and 2ⁿ.
+/// The reduced argument r, and 2ⁿ.
 #[inline(always)]
 fn reduced<T: Number>(x: T) -> (T, T) {
     let shifted = x * std::f64::consts::LOG2_E + ROUND;

@@ -6,7 +6,7 @@ use pulp::{Interleave, Simd};
 
 use crate::{LANES, Lanes, Number};
 
-/// As many numbers as a vector register holds.
+/// The numbers in a vector register.
 #[derive(Debug, Clone, Copy)]
 pub struct Register<S: Simd> {
     value: S::f64s,
@@ -24,7 +24,7 @@ impl<S: Simd> Register<S> {
         pulp::bytemuck::cast_slice_mut(std::slice::from_mut(&mut self.value))
     }
 
-    /// How many registers hold a group.
+    /// Number of registers that hold a group.
     #[inline(always)]
     pub fn parts() -> usize {
         Self::elements(&[0.0; LANES]).len()
@@ -36,29 +36,29 @@ impl<S: Simd> Register<S> {
         Self::of(simd, Self::elements(group)[part])
     }
 
-    /// Puts it back into a group, as register number `part`.
+    /// Stores the register in a group, as register number `part`.
     #[inline(always)]
     pub fn store(self, group: &mut Lanes, part: usize) {
         Self::elements_mut(group)[part] = self.value;
     }
 
-    /// The sum over all lanes, in halves.
+    /// The sum over all lanes, computed by halving.
     #[inline(always)]
     pub fn sum(self) -> f64 {
         self.simd.reduce_sum_f64s(self.value)
     }
 
-    /// The largest of all lanes.
+    /// The largest lane.
     #[inline(always)]
     pub fn largest(self) -> f64 {
         self.simd.reduce_max_f64s(self.value)
     }
 
-    /// The first lane from `start` on that is below `limit`; past the end if there is none.
+    /// The first lane from `start` on that is below `limit`; a number past the end if there is none.
     #[inline(always)]
     pub fn first_below(mut self, limit: Self, start: usize) -> usize {
         if const { size_of::<S::m64s>() == 1 } {
-            // One bit a lane, the first lane lowest (`first_true_m64s` takes it for the highest).
+            // One bit per lane, the first lane lowest (`first_true_m64s` assumes that it is highest).
             let below = u32::from(pulp::bytemuck::cast::<S::m64s, u8>(limit.above(self)));
             return (below >> start << start).trailing_zeros() as usize;
         }
@@ -68,14 +68,15 @@ impl<S: Simd> Register<S> {
         self.simd.first_true_m64s(limit.above(self))
     }
 
-    /// Calls `each` once for every lane with its number and what `rows` hold there, from the first row on; in any order of lanes.
+    /// Calls `each` once for every lane with its number and the entries of `rows` in this lane, from the first row on. The order
+    /// of the lanes is unspecified.
     #[inline(always)]
     pub fn each_lane<const N: usize>(rows: [Self; N], mut each: impl FnMut(usize, &[f64; N]))
     where
         [S::f64s; N]: Interleave,
     {
         let simd = rows[0].simd;
-        // In which order lanes leave the shuffle depends on the processor; their numbers, shuffled likewise, say it.
+        // The order in which lanes leave the shuffle depends on the processor; shuffling their numbers likewise reveals it.
         let order =
             simd.interleave_shfl_f64s([Self::load(simd, &[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0], 0).value; N]);
         let mut columns = [rows[0].value; N];
@@ -237,7 +238,7 @@ mod tests {
     use super::*;
     use crate::dispatch_avx2;
 
-    /// What `each_lane` hands over of four rows and of two: ten times the row plus the lane.
+    /// Checks the arguments of `each_lane` for four rows and for two: ten times the row plus the lane.
     struct Lanewise;
 
     impl WithSimd for Lanewise {

@@ -1,4 +1,4 @@
-//! Plain numbers to calculate with.
+//! Plain numbers as operands.
 
 use crate::Number;
 

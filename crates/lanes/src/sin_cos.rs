@@ -1,15 +1,15 @@
 //! Sine and cosine of many angles at once, to one unit in the last place.
 //!
-//! Reduction by multiples of π/2 in four parts (Cody and Waite), then the minimax polynomials of FDLIBM on
-//! [−π/4, π/4]. There is no branch and no table, so that a compiler turns the loop over lanes into vector code; and no
-//! fused multiply-add, so that every machine gets the same bits. Beyond [`FAR`] the parts of π/2 no longer multiply
-//! exactly and the function of the platform takes over, whose bits may differ.
+//! Reduction by multiples of π/2 in four parts (Cody and Waite), then the minimax polynomials of FDLIBM on [−π/4,
+//! π/4]. There are no branches and no tables, so that the compiler vectorizes the loop over lanes; and no fused
+//! multiply-add, so that every processor gives the same bits. Beyond [`FAR`] the products with the parts of π/2 are no
+//! longer exact, and the platform's function is used, whose bits may differ.
 
 use pulp::{Simd, WithSimd};
 
 use crate::Lanes;
 
-/// Largest angle that the polynomials serve, in radians.
+/// Largest angle for which the polynomials are used, in radians.
 const FAR: f64 = 1e5;
 
 /// π/2 = `PI_2_A` + `PI_2_B` + `PI_2_C` + `PI_2_D` to 151 bits; the first three have 33 bits, so that their products
@@ -19,7 +19,7 @@ const PI_2_B: f64 = f64::from_bits(0x3DD0_B461_1A60_0000);
 const PI_2_C: f64 = f64::from_bits(0x3BA3_198A_2E00_0000);
 const PI_2_D: f64 = f64::from_bits(0x397B_839A_2520_49C1);
 
-/// Adding this rounds to a whole number and leaves that number in the lowest bits.
+/// Adding this rounds to a whole number and leaves it in the lowest bits.
 const ROUND: f64 = 6_755_399_441_055_744.0;
 
 /// Coefficients of `sin x = x + Σ SIN[i] x^(2i+3)`.
@@ -42,7 +42,7 @@ const COS: [f64; 6] = [
     -1.135_964_755_778_819_5e-11,
 ];
 
-/// sin and cos of every angle, in radians; all angles must be finite, and the three slices of one length.
+/// sin and cos of every angle, in radians; all angles must be finite, and the three slices of equal length.
 #[inline(always)]
 pub fn sin_cos_all(angles: &[Lanes], sines: &mut [Lanes], cosines: &mut [Lanes]) {
     let lanes = angles.as_flattened().iter().zip(sines.as_flattened_mut()).zip(cosines.as_flattened_mut());
@@ -55,7 +55,7 @@ pub fn sin_cos_all(angles: &[Lanes], sines: &mut [Lanes], cosines: &mut [Lanes])
     }
 }
 
-/// [`sin_cos_all`] in the widest registers of the processor at hand, for a caller that is compiled for narrower ones.
+/// [`sin_cos_all`] in the widest registers of the processor at hand, for callers compiled for narrower ones.
 #[inline]
 pub fn sin_cos_all_dispatched(angles: &[Lanes], sines: &mut [Lanes], cosines: &mut [Lanes]) {
     pulp::Arch::new().dispatch(SinCosAll { angles, sines, cosines });
@@ -76,7 +76,7 @@ impl WithSimd for SinCosAll<'_> {
     }
 }
 
-/// Replaces what [`sin_cos_all`] cannot do.
+/// Recomputes the angles that are too large for [`sin_cos_all`].
 #[cold]
 fn far_ones(angles: &[f64], sines: &mut [f64], cosines: &mut [f64]) {
     for ((angle, sine), cosine) in angles.iter().zip(sines).zip(cosines) {
@@ -93,14 +93,14 @@ fn near(angle: f64) -> (f64, f64) {
     let quadrant = rounded.to_bits();
     let (x, tail) = reduced(angle, rounded - ROUND);
     let (sine, cosine) = (sine(x, tail).to_bits(), cosine(x, tail).to_bits());
-    // In odd quadrants the two change places; by masks, because a choice would become a branch.
+    // In odd quadrants sine and cosine are swapped; by masks, because a conditional would become a branch.
     let swap = (sine ^ cosine) & (quadrant & 1).wrapping_neg();
     let sine_sign = (quadrant & 2) << 62;
     let cosine_sign = (quadrant.wrapping_add(1) & 2) << 62;
     (f64::from_bits(sine ^ swap ^ sine_sign), f64::from_bits(cosine ^ swap ^ cosine_sign))
 }
 
-/// angle − turns · π/2 as a sum of a value and its rounding error.
+/// angle − turns · π/2 as the sum of a value and its rounding error.
 #[inline(always)]
 fn reduced(angle: f64, turns: f64) -> (f64, f64) {
     let first = angle - turns * PI_2_A;
@@ -111,8 +111,8 @@ fn reduced(angle: f64, turns: f64) -> (f64, f64) {
     (x, (third - x) - rest)
 }
 
-/// a − b and its rounding error, exactly (Dekker), if a is a multiple of b's last place. So it is in [`reduced`]: with
-/// `turns` not 0, the angle and turns · A are multiples of 2⁻⁵³ and turns · B of 2⁻⁶⁶, while the last places of
+/// a − b and its rounding error, exactly (Dekker), if a is a multiple of b's last place. This holds in [`reduced`]: if
+/// `turns` is not 0, the angle and turns · A are multiples of 2⁻⁵³ and turns · B of 2⁻⁶⁶, while the last places of
 /// turns · B and turns · C are below 2⁻⁶⁹ and 2⁻¹⁰⁴.
 #[inline(always)]
 fn difference(a: f64, b: f64) -> (f64, f64) {
@@ -145,14 +145,14 @@ mod tests {
     use super::*;
     use crate::{LANES, dispatch_avx2};
 
-    /// Distance in units in the last place, across zero too.
+    /// Distance in units in the last place, also across zero.
     fn ulps(a: f64, b: f64) -> u64 {
         let line =
             |x: f64| if x.is_sign_negative() { -x.abs().to_bits().cast_signed() } else { x.to_bits().cast_signed() };
         line(a).abs_diff(line(b))
     }
 
-    /// Every lane in turn gets the angle; the others get neighbours.
+    /// Every other lane contains the angle, the rest its negative.
     fn in_lanes(angle: f64) -> [(f64, f64); LANES] {
         let angles = [std::array::from_fn(|lane| if lane % 2 == 0 { angle } else { -angle })];
         let (mut sines, mut cosines) = ([[0.0; LANES]], [[0.0; LANES]]);
@@ -182,7 +182,7 @@ mod tests {
         assert_eq!(near(-0.0).0.to_bits(), (-0.0_f64).to_bits());
     }
 
-    /// Where the sine or cosine all but vanishes, every bit of π/2 counts.
+    /// Where the sine or cosine nearly vanishes, every bit of π/2 matters.
     #[test]
     fn next_to_every_multiple_of_half_a_right_angle() {
         for k in 0..127_323 {

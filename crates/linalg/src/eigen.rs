@@ -6,16 +6,16 @@ use nalgebra::DMatrix;
 
 use crate::view::{view, view_mut};
 
-/// Ascending eigenvalues (n) of a symmetric matrix, of which the lower triangle is read, and its eigenvectors as columns, (n, n). None if
-/// the iteration does not converge.
+/// Ascending eigenvalues (n) of a symmetric matrix, of which only the lower triangle is read, and its eigenvectors as columns, (n, n).
+/// `None` if the iteration does not converge.
 pub fn symmetric_eigen(matrix: &DMatrix<f64>) -> Option<(Vec<f64>, DMatrix<f64>)> {
     let mut vectors = DMatrix::zeros(matrix.ncols(), matrix.ncols());
     let values = decompose(matrix, Some(&mut vectors))?;
     Some((values, vectors))
 }
 
-/// Ascending eigenvalues (n) of a symmetric matrix, of which the lower triangle is read: half the work of the vectors too. None if
-/// the iteration does not converge.
+/// Ascending eigenvalues (n) of a symmetric matrix, of which only the lower triangle is read; half the work of computing eigenvectors as
+/// well. `None` if the iteration does not converge.
 pub fn symmetric_eigenvalues(matrix: &DMatrix<f64>) -> Option<Vec<f64>> {
     decompose(matrix, None)
 }

@@ -8,15 +8,16 @@ use nalgebra::DMatrix;
 
 use crate::view::{view, view_mut};
 
-/// The Cholesky factor L of a positive definite K = LLᵀ, (M, M), in the lower triangle; above it stands nothing of meaning.
+/// The Cholesky factor L of a positive definite K = LLᵀ, (M, M), in the lower triangle; the entries above it are
+/// meaningless.
 #[derive(Debug, Clone)]
 pub struct Factor {
     lower: DMatrix<f64>,
 }
 
 impl Factor {
-    /// Of a symmetric matrix, of which the lower triangle is read; none if it is not positive definite in f64. M³/3
-    /// operations.
+    /// Factorizes a symmetric matrix, of which only the lower triangle is read; `None` if it is not positive definite in
+    /// f64. M³/3 operations.
     pub fn new(mut matrix: DMatrix<f64>) -> Option<Self> {
         let scratch = cholesky_in_place_scratch::<f64>(matrix.nrows(), Par::Seq, Spec::default());
         let mut memory = MemBuffer::new(scratch);
@@ -54,7 +55,7 @@ impl Factor {
         self.whiten_transposed(b);
     }
 
-    /// L, for its memory; above the diagonal stands nothing of meaning.
+    /// L, to reuse its memory; the entries above the diagonal are meaningless.
     pub fn into_matrix(self) -> DMatrix<f64> {
         self.lower
     }
@@ -71,7 +72,7 @@ impl Factor {
         invert_lower_triangular(view_mut(x), view(&self.lower), Par::Seq);
     }
 
-    /// Writes the lower triangles of K⁻¹ and, on the way, of X = L⁻¹, both (M, M).
+    /// Writes the lower triangles of K⁻¹ and of the intermediate result X = L⁻¹, both (M, M).
     pub fn inverse_into(&self, inverse: &mut DMatrix<f64>, x: &mut DMatrix<f64>) {
         self.inverse_triangle_into(x);
         matmul(

@@ -1,18 +1,19 @@
-//! Linear algebra of f64 by libraries: nalgebra's matrices, algorithms of faer and approx-chol, one thread, so that the bits do not
-//! depend on the number of threads.
+//! Linear algebra of f64 by libraries: nalgebra's matrices, algorithms of faer and approx-chol. It uses one thread, so that the
+//! bits do not depend on the number of threads.
 //!
 //! | | |
 //! |---|---|
-//! | [`Factor`] | Cholesky: K = LLᵀ, and what follows from L |
+//! | [`Factor`] | Cholesky: K = LLᵀ, and results computed from L |
 //! | [`qr_triangle`] | R of A = QR |
 //! | [`singular_values`] | A = U diag(s) Vᵀ |
 //! | [`symmetric_eigen`], [`symmetric_eigenvalues`] | A = V diag(λ) Vᵀ |
-//! | [`LaplacianFactor`] | approximate Cholesky of a sparse graph Laplacian, to precondition with |
+//! | [`LaplacianFactor`] | approximate Cholesky of a sparse graph Laplacian, as a preconditioner |
 //! | [`transposed_product`], [`transposed_product_of_rows`], [`gram`], [`subtract_gram`], [`subtract_outer`] | products |
 //!
-//! Both libraries are generic and are compiled where they are used. Here that happens once; learners and their tests only link it.
+//! Both libraries are generic and are compiled where they are used. Here that happens once; learners and their tests only link the
+//! result.
 //!
-//! Functions panic if shapes do not fit.
+//! Functions panic if shapes do not match.
 
 mod eigen;
 mod factor;
@@ -29,7 +30,7 @@ pub use product::{gram, subtract_gram, subtract_outer, transposed_product, trans
 pub use qr::qr_triangle;
 pub use svd::{Svd, singular_values};
 
-/// The program of the README, compiled.
+/// Compiles the program in the README.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;

@@ -11,7 +11,7 @@ pub fn transposed_product(a: &DMatrix<f64>, b: &DMatrix<f64>) -> DMatrix<f64> {
     transposed_product_of_rows(a.as_slice(), a.nrows(), b)
 }
 
-/// AᵀB, (k, c), of B, (M, c), and A, (M, k): the first M of the `stride` numbers of each column.
+/// AᵀB, (k, c), of B, (M, c), and A, (M, k). Each column of A is the first M of `stride` numbers.
 pub fn transposed_product_of_rows(columns: &[f64], stride: usize, b: &DMatrix<f64>) -> DMatrix<f64> {
     let a = MatRef::from_column_major_slice(columns, stride, columns.len() / stride).subrows(0, b.nrows());
     let mut product = DMatrix::zeros(a.ncols(), b.ncols());
@@ -19,7 +19,7 @@ pub fn transposed_product_of_rows(columns: &[f64], stride: usize, b: &DMatrix<f6
     product
 }
 
-/// AᵀA, (k, k), of A, (rows, k), given column after column: the lower triangle counts, above it are zeros.
+/// AᵀA, (k, k), of A, (rows, k), given column by column; the lower triangle, with zeros above.
 pub fn gram(columns: &[f64], rows: usize) -> DMatrix<f64> {
     let a = MatRef::from_column_major_slice(columns, rows, columns.len() / rows);
     let mut gram = DMatrix::zeros(a.ncols(), a.ncols());

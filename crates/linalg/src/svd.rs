@@ -17,8 +17,8 @@ pub struct Svd {
     pub v: DMatrix<f64>,
 }
 
-/// Singular values and vectors of a square matrix, (m, m). None if the iteration does not converge, or to numbers that are not
-/// finite.
+/// Singular values and vectors of a square matrix, (m, m). `None` if the iteration does not converge, or converges to
+/// non-finite numbers.
 pub fn singular_values(matrix: &DMatrix<f64>) -> Option<Svd> {
     let count = matrix.nrows();
     let vectors = ComputeSvdVectors::Full;

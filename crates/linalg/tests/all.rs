@@ -1,5 +1,5 @@
-//! Identities of factors and decompositions, and the same by nalgebra. They are one program beside the library, which would
-//! otherwise be compiled twice.
+//! Identities of factors and decompositions, and comparisons with nalgebra. They form one test program, because several
+//! would compile the library several times.
 #![allow(missing_docs, clippy::unwrap_used)]
 
 mod drawn;

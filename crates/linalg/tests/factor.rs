@@ -31,7 +31,7 @@ proptest! {
         near(&(&k * solved), &b, 1e-11)?;
     }
 
-    /// Only lower triangles are written, and only that of K is read.
+    /// Only lower triangles are written, and only the lower triangle of K is read.
     #[test]
     fn inverses_are_inverse(a in size().prop_flat_map(|m| matrix(m, m)), shift in 0.5..2.0, above in -9.0..9.0) {
         let m = a.nrows();
@@ -44,7 +44,7 @@ proptest! {
         prop_assert_eq!(&triangle, &lower(&triangle));
         near(&(&l * &triangle), &DMatrix::identity(m, m), 1e-11)?;
 
-        // Whatever stood in the lower triangles is replaced; zeros above stay.
+        // Previous entries in the lower triangles are replaced; zeros above are kept.
         let mut inverse = DMatrix::from_element(m, m, above);
         let mut x = lower(&inverse);
         factor.inverse_into(&mut inverse, &mut x);

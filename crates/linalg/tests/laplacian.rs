@@ -3,7 +3,7 @@ use proptest::collection::vec;
 use proptest::prelude::*;
 
 proptest! {
-    /// Elimination of a path fills nothing in, so that nothing is approximate.
+    /// Elimination on a path has no fill-in, so that the factor is exact.
     #[test]
     fn a_path_is_solved_exactly(weights in vec(0.1..10.0, 1..40), seed in -1.0..1.0f64) {
         let nodes = weights.len() + 1;

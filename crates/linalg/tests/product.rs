@@ -5,7 +5,7 @@ use proptest::prelude::*;
 use crate::drawn::{matrix, near, size};
 
 proptest! {
-    /// Also of some rows of A alone, none among them.
+    /// Includes products with some or none of the rows of A.
     #[test]
     fn products_are_those_of_nalgebra(
         (a, b) in (size(), size(), size()).prop_flat_map(|(m, k, c)| (matrix(m, k), matrix(m, c))), count in 0usize..90,

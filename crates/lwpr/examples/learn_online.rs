@@ -1,4 +1,4 @@
-//! Learns a noisy sine one sample at a time and prints how the error falls.
+//! Learns a noisy sine one sample at a time, and prints the decreasing error.
 
 #![allow(clippy::print_stdout, reason = "a program")]
 

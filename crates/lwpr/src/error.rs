@@ -1,6 +1,6 @@
 use thiserror::Error;
 
-/// The argument of a call that an error is about.
+/// The argument of a call to which an error refers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Side {
     /// The inputs x.
@@ -18,7 +18,7 @@ impl std::fmt::Display for Side {
     }
 }
 
-/// Why a model cannot be built, trained, evaluated or read back. All numbers count from 0.
+/// Reasons why a model cannot be built, trained, evaluated or read. All numbers count from 0.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum LwprError {
@@ -30,7 +30,7 @@ pub enum LwprError {
         /// Requested number of outputs.
         n_out: usize,
     },
-    /// A model has more inputs or outputs than fit.
+    /// A model has more inputs or outputs than possible.
     #[error(
         "a model of {found} {side}(s): at most {most} are possible (of inputs fewer with a full metric than with a diagonal one)"
     )]
@@ -47,15 +47,15 @@ pub enum LwprError {
     Parameter {
         /// Name of the field of [`LwprParams`](crate::LwprParams).
         name: &'static str,
-        /// The value given.
+        /// The given value.
         value: f64,
-        /// What is allowed, in words.
+        /// The valid range, in words.
         range: &'static str,
     },
     /// `init_metric` does not have one row and one column for each input.
     #[error("init_metric has shape ({}, {}), the model has {n_in} input(s): give a square matrix, one row an input", shape.0, shape.1)]
     MetricShape {
-        /// Rows and columns given.
+        /// Given numbers of rows and columns.
         shape: (usize, usize),
         /// Number of inputs.
         n_in: usize,
@@ -83,14 +83,14 @@ pub enum LwprError {
         /// The element.
         value: f64,
     },
-    /// `norm_in` or `norm_out` has not one element for each dimension.
+    /// The length of `norm_in` or `norm_out` differs from the number of dimensions.
     #[error("the norm of the {side}s has {found} element(s), the model {expected} {side}(s)")]
     NormLength {
         /// Inputs or outputs.
         side: Side,
-        /// Elements given.
+        /// Number of given elements.
         found: usize,
-        /// Elements needed.
+        /// Number of required elements.
         expected: usize,
     },
     /// A norm is not a positive finite number.
@@ -98,19 +98,19 @@ pub enum LwprError {
     Norm {
         /// Inputs or outputs.
         side: Side,
-        /// Which element.
+        /// Index of the element.
         dimension: usize,
-        /// The value given.
+        /// The given value.
         value: f64,
     },
-    /// A vector or matrix has not one row for each dimension.
+    /// The number of rows of a vector or matrix differs from the number of dimensions.
     #[error("the {side}s have {found} dimension(s), the model {expected}; samples are columns")]
     Dimension {
         /// Inputs or outputs.
         side: Side,
-        /// Rows given.
+        /// Number of given rows.
         found: usize,
-        /// Rows needed.
+        /// Number of required rows.
         expected: usize,
     },
     /// A value is NaN or infinite, or so large against its norm (over 1e50) that its powers would be.
@@ -127,26 +127,26 @@ pub enum LwprError {
         /// The value itself.
         value: f64,
     },
-    /// Inputs and targets do not come in pairs.
+    /// The numbers of inputs and targets differ.
     #[error("{inputs} input sample(s) but {outputs} target(s): give one target a sample")]
     SampleCount {
-        /// Columns of the inputs.
+        /// Number of columns of the inputs.
         inputs: usize,
-        /// Columns of the targets.
+        /// Number of columns of the targets.
         outputs: usize,
     },
     /// A batch has no sample.
     #[error("the batch has no sample (0 columns)")]
     EmptyBatch,
-    /// A sample needs a new receptive field, but there are `max_receptive_fields` already.
+    /// A sample needs a new receptive field, but there are already `max_receptive_fields`.
     #[error(
         "sample {sample} needs another receptive field for output {output}, which has its {limit} already: \
          widen the fields (smaller init_d or w_gen) or raise max_receptive_fields; the model is unchanged"
     )]
     TooManyReceptiveFields {
-        /// Column of the sample (in the order given; 0 for a single one).
+        /// Column of the sample (in the given order; 0 for a single one).
         sample: usize,
-        /// Which output.
+        /// Index of the output.
         output: usize,
         /// The limit.
         limit: usize,
@@ -154,7 +154,7 @@ pub enum LwprError {
     /// A serialised model or predictor is not consistent.
     #[error("the stored model is not consistent: {reason}")]
     Corrupt {
-        /// What is wrong with it.
+        /// Description of the fault.
         reason: String,
     },
 }

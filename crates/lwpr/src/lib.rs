@@ -29,34 +29,36 @@
 //! # What to choose
 //!
 //! - `norm_in`, `norm_out`: the spread of each dimension. All other settings refer to data divided by these.
-//! - `init_d`: the one that matters most. Fields are about 2/√`init_d` wide; start with a few tens in 2 dimensions,
-//!   less in more, double it while a validation error falls. Too small, and one field covers everything; too large, and
-//!   fields multiply until each knows only a few samples.
-//! - [`Metric::Diagonal`] is right nearly always. [`Metric::Full`] turns fields along valleys, at O(n³) a sample and
-//!   field.
-//! - [`MetricAdaptation::Gradient`] adapts the fields' shapes; [`Meta`](MetricAdaptation::Meta) also their learning
-//!   rates, which then may start low (`init_alpha` of a few); [`Fixed`](MetricAdaptation::Fixed) suits data that are
-//!   dense and even.
+//! - `init_d`: the most important one. Fields are about 2/√`init_d` wide. Start with a few tens in 2 dimensions, less
+//!   in more, and double it while a validation error decreases. If it is too small, one field covers everything; if it
+//!   is too large, there are so many fields that each has only a few samples.
+//! - [`Metric::Diagonal`] is nearly always right. [`Metric::Full`] rotates fields along valleys, at O(n³) per sample
+//!   and field.
+//! - [`MetricAdaptation::Gradient`] adapts the fields' shapes; [`Meta`](MetricAdaptation::Meta) also adapts their
+//!   learning rates, which then may start low (`init_alpha` of a few); [`Fixed`](MetricAdaptation::Fixed) suits data
+//!   that are dense and even.
 //! - Samples in random order learn better than along trajectories: [`Lwpr::fit_batch`] shuffles every pass.
 //!
-//! Between updates the model itself can be asked ([`Lwpr::predict_into`], [`Lwpr::value_and_gradient_into`]), which
-//! saves the snapshot. Outputs whose mean and size are not known beforehand are learnt by [`Training::fit`].
+//! Between updates the model itself can predict ([`Lwpr::predict_into`], [`Lwpr::value_and_gradient_into`]), without a
+//! snapshot. [`Training::fit`] learns outputs whose mean and size are not known in advance.
 //!
-//! A batch gives the same model as its samples one by one, bit for bit, at any number of threads, faster.
+//! Training on a batch gives the same model as on its samples one by one, bit for bit, at any number of threads, but
+//! faster.
 //!
 //! # When it fails
 //!
-//! - **Time and memory grow with the number of fields.** In few dimensions it settles, and a sample costs the same
-//!   among 10⁶ as among 10³. In many dimensions with noise fields multiply: with 22 inputs the total time grows as
-//!   n^2.1 beyond 10⁴ samples (`docs/performance.md`). A smaller `init_d` or `w_gen`, or `max_receptive_fields`, limits
-//!   them.
-//! - **Outside all fields** there is no prediction: [`Predictor::predict`] returns none below its cutoff.
-//! - **Gradients** are those of a weighted mean of local lines, less accurate than values where fields are few.
+//! - **Time and memory grow with the number of fields.** In few dimensions this number converges, and a sample costs
+//!   the same among 10⁶ as among 10³. In many dimensions with noise the number keeps growing: with 22 inputs the total
+//!   time grows as n^2.1 beyond 10⁴ samples (`docs/performance.md`). A smaller `init_d` or `w_gen`, or
+//!   `max_receptive_fields`, limits it.
+//! - **Outside all fields** there is no prediction: [`Predictor::predict`] returns `None` below its cutoff.
+//! - **Gradients** are those of a weighted mean of local lines; they are less accurate than values where there are few
+//!   fields.
 //! - [`LwprError`]: parameters out of range, wrong dimensions, or numbers that are not finite.
 
-// Code under `pulp::Arch::dispatch` is compiled for the processor at hand only where it is inlined.
+// Code under `pulp::Arch::dispatch` is compiled for the actual processor only if it is inlined.
 #![allow(clippy::inline_always)]
-// Several rows run in step, and lanes are numbered.
+// Several rows are indexed in parallel, and lanes are numbered.
 #![allow(clippy::needless_range_loop)]
 
 mod error;

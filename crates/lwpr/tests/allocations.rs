@@ -1,16 +1,16 @@
-//! What predicts does not allocate, but for the answers that are returned.
+//! Prediction does not allocate, except for returned results.
 
 #![allow(clippy::unwrap_used)] // A panic is how a test fails.
 
 use lwpr::{Lwpr, LwprParams, Metric, Prediction};
 use nalgebra::{DMatrix, DVector};
 
-/// How often this thread allocates in `work`.
+/// Number of allocations of this thread in `work`.
 fn allocations(work: impl FnOnce()) -> u64 {
     allocation_counter::measure(work).count_total
 }
 
-/// Two outputs, fields with and without support, and samples to ask.
+/// Two outputs, fields with and without support, and query points.
 fn trained(n_in: usize, metric: Metric) -> (Lwpr, DMatrix<f64>) {
     let params = LwprParams { metric, init_d: 20.0 / n_in as f64, w_prune: 0.9, ..LwprParams::default() };
     let mut model = params.build(n_in, 2).unwrap();
@@ -29,7 +29,7 @@ fn predictions_allocate_nothing_but_their_answers() {
         let predictor = model.predictor(0.001);
         let mut prediction = Prediction::zeros(n_in, 2);
         let (mut gradient, mut supported) = (DVector::zeros(n_in), 0);
-        // The first query makes room.
+        // The first query allocates scratch memory.
         let mut all = |supported: &mut usize| {
             for x in xs.column_iter() {
                 *supported += usize::from(predictor.predict_into(x, &mut prediction));

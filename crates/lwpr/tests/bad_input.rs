@@ -1,4 +1,4 @@
-//! What is refused, and how.
+//! Invalid input and the resulting errors.
 
 use lwpr::{Lwpr, LwprError, LwprParams, Metric, MetricAdaptation, Side};
 use nalgebra::{DMatrix, DVector, dmatrix, dvector};
@@ -75,7 +75,7 @@ fn norms() {
     assert_eq!(refused(negative), LwprError::Norm { side: Side::Output, dimension: 0, value: -1.0 });
 }
 
-/// A model of a few fields.
+/// A model with a few fields.
 fn trained() -> Lwpr {
     let mut model = params().build(2, 1).unwrap();
     let xs = DMatrix::from_fn(2, 200, |i, j| ((j * (i + 3)) as f64 * 0.37).sin());

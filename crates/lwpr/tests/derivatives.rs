@@ -1,4 +1,4 @@
-//! Gradient and Hessian of the prediction against central differences.
+//! Compares gradient and Hessian of the prediction with central differences.
 
 use crate::support::case;
 use nalgebra::{DMatrix, DVector};
@@ -12,7 +12,7 @@ proptest! {
     #[test]
     fn gradient_and_hessian_are_derivatives(case in case(250), at in 0_usize..250, output in 0_usize..3) {
         let (n, output) = (case.n_in, output % case.n_out);
-        // With no cutoff the prediction is smooth (the bisquare kernel's second derivative jumps at its border).
+        // Without a cutoff the prediction is smooth (the second derivative of the bisquare kernel jumps at its border).
         let predictor = case.trained(2).predictor(0.0);
         let x = case.xs.column(at).into_owned();
         let gradient_at = |x: &DVector<f64>| {
@@ -21,7 +21,7 @@ proptest! {
         };
         let Some(gradient) = gradient_at(&x) else { return Ok(()) };
         let hessian = predictor.hessian(x.as_view(), output).unwrap();
-        // All outputs together answer only where each has support.
+        // There is a joint prediction of all outputs only if each has support.
         if let Some(p) = predictor.predict(x.as_view()) {
             prop_assert_eq!(p.gradient.row(output).transpose(), gradient.clone());
         }

@@ -46,7 +46,7 @@ fn params(file: &Value) -> LwprParams {
     }
 }
 
-/// Largest difference seen, over the largest reference value seen.
+/// Largest observed difference, and largest observed reference value.
 #[derive(Default)]
 struct Difference {
     difference: f64,
@@ -87,7 +87,7 @@ fn check(path: &Path) {
             activation.see(predictor.max_activation(x.as_view(), output), number(&file["max_activation"][i][output]));
         }
         let Some(prediction) = predictor.predict(x.as_view()) else {
-            // The library says 0 ± 1e20.
+            // The library returns 0 ± 1e20.
             assert!((0..n_out).any(|output| number(&file["confidence"][i][output]) > 1e18), "{name}: point {i}");
             unsupported += 1;
             continue;
@@ -97,7 +97,7 @@ fn check(path: &Path) {
             for k in 0..n_in {
                 gradient.see(prediction.gradient[(output, k)], number(&file["gradient"][i][output][k]));
             }
-            // The library reports rounding noise for young fields.
+            // The library returns rounding noise for young fields.
             if name == "d2_young" {
                 assert_eq!(prediction.confidence[output], f64::INFINITY);
             } else {

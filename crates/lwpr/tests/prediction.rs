@@ -1,4 +1,4 @@
-//! The one sweep over all fields beside the formulas read literally, and the model as it stands beside its snapshot.
+//! Compares the single sweep over all fields with the literal formulas, and the live model with its snapshot.
 
 use crate::support::case;
 use lwpr::{Kernel, Prediction, Predictor};
@@ -11,7 +11,7 @@ fn vector(value: &Value) -> DVector<f64> {
     DVector::from_vec(numbers)
 }
 
-/// A stored field and what it says at a normalised input.
+/// A stored field and its outputs at a normalised input.
 struct Said {
     w: f64,
     dw: f64,
@@ -32,7 +32,7 @@ fn activation(kernel: Kernel, q: f64) -> (f64, f64, f64) {
     }
 }
 
-/// The largest activation, and what the fields say that take part.
+/// The largest activation, and the outputs of the fields that take part.
 fn ask(fields: &Value, kernel: Kernel, cutoff: f64, x: &DVector<f64>) -> (f64, Vec<Said>) {
     let n = x.len();
     let (mut largest, mut said) = (0.0_f64, Vec::new());
@@ -74,7 +74,7 @@ proptest! {
         case in case(200), exponent in -9.0..-1.0, output in 0_usize..3, at in 0_usize..200, away in 0.0..1.0,
     ) {
         let (n, output) = (case.n_in, output % case.n_out);
-        // Not where a field's activation is the cutoff to rounding.
+        // Skips cases in which a field's activation equals the cutoff up to rounding.
         let cutoff = 10_f64.powf(exponent);
         let predictor = case.trained(2).predictor(cutoff);
         let stored = serde_json::to_value(&predictor).unwrap();
@@ -171,7 +171,7 @@ proptest! {
         prop_assert!(count > 0);
     }
 
-    /// Small batches stay on one thread; as many queries as go to several are answered alike.
+    /// Small batches stay on one thread; batches large enough for several give the same results.
     #[test]
     fn a_batch_is_one_query_after_the_other(case in case(100), far in 0_usize..100) {
         let model = case.trained(1);

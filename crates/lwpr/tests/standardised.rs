@@ -51,7 +51,7 @@ proptest! {
         }
     }
 
-    /// Given divisors are used as they are; those that would be chosen give the same bits.
+    /// Given divisors are used unchanged; those that would be chosen automatically give the same bits.
     #[test]
     fn outputs_are_divided_by_norms_that_are_given(case in case(150), exponent in -8..8_i32) {
         let given = |norm_out: &DVector<f64>, ys: &DMatrix<f64>| {
@@ -88,7 +88,7 @@ proptest! {
 
 #[test]
 fn equal_outputs_have_spread_one() {
-    // The mean of 64 times .1 is not .1.
+    // In floating point, the mean of 64 times .1 is not .1.
     for output in [7.0, 0.1, -1e30] {
         let (xs, ys) = (DMatrix::from_fn(2, 64, |i, j| (j * (i + 2)) as f64 * 0.1), DMatrix::repeat(1, 64, output));
         let model = Training::default().fit(xs.as_view(), ys.as_view(), &mut ChaCha8Rng::seed_from_u64(1)).unwrap();

@@ -1,4 +1,4 @@
-//! Stored models and predictors: what is refused, and that whatever was trained can be read again.
+//! Stored models and predictors: invalid ones are refused, and every trained model can be read again.
 
 use crate::support::case;
 use lwpr::{Kernel, Lwpr, LwprParams, Metric, MetricAdaptation, Predictor};
@@ -6,7 +6,7 @@ use nalgebra::DMatrix;
 use proptest::prelude::*;
 use serde_json::{Value, json};
 
-/// A model of a few fields.
+/// A model with a few fields.
 fn trained(metric: Metric) -> Lwpr {
     let mut model = LwprParams { metric, ..LwprParams::default() }.build(2, 1).unwrap();
     let xs = DMatrix::from_fn(2, 200, |i, j| ((j * (i + 3)) as f64 * 0.37).sin());
@@ -58,7 +58,7 @@ fn models_that_cannot_be() {
     for (path, value) in spoil {
         assert!(serde_json::from_value::<Lwpr>(spoilt(&good, path, value.clone())).is_err(), "{path} {value}");
     }
-    // Without a field nothing else says how many inputs there are.
+    // Without a field nothing else determines the number of inputs.
     let empty = spoilt(&good, "/outputs/0/fields", json!([]));
     assert!(serde_json::from_value::<Lwpr>(spoilt(&empty, "/n_in", 1_000_000_000_000_u64.into())).is_err());
     let full = spoilt(&empty, "/params/metric", "Full".into());
@@ -95,7 +95,7 @@ fn predictors_that_cannot_be() {
     }
 }
 
-/// Reads back what was stored, and stores it again.
+/// Reads a stored model, and stores it again.
 fn read_back(model: &Lwpr) -> Result<(), String> {
     let text = serde_json::to_string(model).unwrap();
     let again: Lwpr = serde_json::from_str(&text).map_err(|error| error.to_string())?;
@@ -118,7 +118,7 @@ fn equal_samples_train_a_model_that_reads_back() {
     model.fit_in_order(xs.as_view(), ys.as_view(), 1).unwrap();
     assert_eq!((read_back(&model), model.n_receptive_fields(0)), (Ok(()), 1));
 
-    // Until nothing is left of the spread that a projection starts with.
+    // Trains until nothing is left of the initial spread of a projection.
     let params = LwprParams { init_lambda: 0.99, final_lambda: 0.99, ..LwprParams::default() };
     let mut model = params.build(2, 1).unwrap();
     let (xs, ys) = (DMatrix::repeat(2, 80_000, 0.3), DMatrix::repeat(1, 80_000, 1.5));

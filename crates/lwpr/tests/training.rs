@@ -1,4 +1,4 @@
-//! Batch = online, storing, threads, units, order of outputs.
+//! Invariances: batch and online, storing, threads, units, order of outputs.
 
 use crate::support::{Case, case};
 use lwpr::{Lwpr, Metric, Pruning};
@@ -7,7 +7,7 @@ use proptest::prelude::*;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
-/// The whole state; equal texts are equal bits.
+/// The complete state as text; equal texts mean equal bits.
 fn state(model: &Lwpr) -> String {
     serde_json::to_string(model).unwrap()
 }
@@ -90,7 +90,7 @@ proptest! {
 
     #[test]
     fn of_two_fields_the_chosen_one_is_pruned(case in case(300), at in 0_usize..300) {
-        // Fields that were never pruned, of many shapes; then the same sample three times over.
+        // Unpruned fields of many shapes; then the same sample three times.
         let mut case = Case { n_out: 1, ..case };
         case.ys = DMatrix::from_rows(&[case.ys.row(0)]);
         case.params.norm_out = case.params.norm_out.map(|norm| norm.rows(0, 1).into_owned());
@@ -131,7 +131,7 @@ proptest! {
         let predictor = model.predictor(0.0);
         for output in 0..case.n_out {
             for field in model.receptive_fields(output) {
-                // D = MᵀM of an M that may be all but singular: definite to rounding.
+                // D = MᵀM with an M that may be almost singular: positive definite up to rounding.
                 let values = field.distance_metric().symmetric_eigenvalues();
                 prop_assert!(values.min() >= -1e-14 * values.max() && values.max() > 0.0, "{values}");
                 if case.params.metric == Metric::Diagonal {

@@ -1,6 +1,6 @@
 use thiserror::Error;
 
-/// The input that a value belongs to.
+/// The input to which a value belongs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Series {
     /// The true policy or potential.
@@ -9,7 +9,7 @@ pub enum Series {
     Learnt,
     /// The difference of the two after the caller's projection.
     Projected,
-    /// The errors to be summed up.
+    /// The errors to be summarized.
     Errors,
 }
 
@@ -24,19 +24,19 @@ impl std::fmt::Display for Series {
     }
 }
 
-/// Why an error has no value. All numbers count from 0; a potential or a list counts as one dimension.
+/// Reasons why an error has no value. All numbers count from 0; a potential or a list counts as one dimension.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum MetricsError {
     /// There are no samples.
     #[error("there is no sample ({rows} rows, {columns} columns); give at least one")]
     Empty {
-        /// Dimensions given.
+        /// The given number of dimensions.
         rows: usize,
-        /// Samples given.
+        /// The given number of samples.
         columns: usize,
     },
-    /// Truth and learnt do not have the same shape.
+    /// Truth and estimate have different shapes.
     #[error(
         "the truth has shape ({}, {}), the learnt one ({}, {}): evaluate both at the same states",
         truth.0, truth.1, learnt.0, learnt.1
@@ -44,13 +44,13 @@ pub enum MetricsError {
     Shape {
         /// Dimensions and samples of the truth.
         truth: (usize, usize),
-        /// Dimensions and samples of what was learnt.
+        /// Dimensions and samples of the estimate.
         learnt: (usize, usize),
     },
     /// A value is NaN or infinite.
     #[error("{series}, sample {sample}, dimension {dimension}: {value} is not a finite number; mend what computed it")]
     NotFinite {
-        /// Where the value stands.
+        /// Its input.
         series: Series,
         /// Its sample.
         sample: usize,
@@ -59,7 +59,7 @@ pub enum MetricsError {
         /// The value itself.
         value: f64,
     },
-    /// The truth does not vary beyond rounding, so that no error can be measured against it.
+    /// The truth does not vary beyond rounding, so that no relative error can be computed.
     #[error(
         "the truth is constant over the {samples} sample(s) (about {magnitude:e}, deviation {deviation:e}); \
          test at states where it differs"
@@ -72,7 +72,7 @@ pub enum MetricsError {
         /// Root mean square of its deviation from the mean.
         deviation: f64,
     },
-    /// All values are finite, but the result is beyond the largest number.
+    /// All values are finite, but the result overflows.
     #[error("the result is larger than the largest number; the values given differ beyond all measure")]
     Overflow,
 }

@@ -5,7 +5,7 @@
 //!
 //! - [`nupe`]: error of the unconstrained policy (A1).
 //! - [`ncpe`]: error of the policy projected through given constraints (A2).
-//! - [`nppe`], [`npoe`]: errors of estimated constraints, by the policy and by the velocities they leave.
+//! - [`nppe`], [`npoe`]: errors of estimated constraints, measured by the policy and by the velocities that they allow.
 //! - [`potential_nmse`], [`alignment_nmse`]: errors of a potential, up to a constant (A3), (A4).
 //! - [`Summary`]: mean, standard deviation and median over data sets.
 //!
@@ -38,7 +38,7 @@ pub use policy::{ncpe, npoe, nppe, nupe};
 pub use potential::{alignment_nmse, potential_nmse};
 pub use summary::Summary;
 
-/// The program of the README, compiled.
+/// Compiles the program in the README.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;

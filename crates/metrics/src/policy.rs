@@ -15,14 +15,14 @@ pub fn nupe(truth: &DMatrix<f64>, learnt: &DMatrix<f64>) -> Result<f64, MetricsE
     ncpe(truth, learnt, |_sample, _difference| {})
 }
 
-/// Normalised constrained policy error (A2): `Σ_n ‖N_n (π_n − π̂_n)‖² / (N σ²_π)`, with σ² as in [`nupe`]: of the true
-/// policy without any constraint.
+/// Normalised constrained policy error (A2): `Σ_n ‖N_n (π_n − π̂_n)‖² / (N σ²_π)`. As in [`nupe`], σ² is that of the true
+/// policy without constraints.
 ///
 /// `project(sample, difference)` replaces a vector (n) by its projection through the constraint at that sample. It is called
-/// once for each sample, in order, and must be linear: the difference comes in units of the largest true value.
+/// once for each sample, in order, and must be linear: the difference is in units of the largest true value.
 ///
 /// # Errors
-/// As [`nupe`], and [`MetricsError::NotFinite`] for what `project` leaves.
+/// As [`nupe`], and [`MetricsError::NotFinite`] for the result of `project`.
 pub fn ncpe(
     truth: &DMatrix<f64>,
     learnt: &DMatrix<f64>,
@@ -53,9 +53,9 @@ pub fn nppe(
     })
 }
 
-/// Normalised projected observation error: `Σ_n ‖u_n − N̂_n u_n‖² / (N σ²_u)`, what estimated projectors N̂ of constraints take
-/// from observed velocities u, (n, N), which the true ones leave as they are (Lin, Howard, Vijayakumar, ICRA 2015). Needs no
-/// truth. `learnt` is as in [`nppe`], σ² as in [`nupe`].
+/// Normalised projected observation error: `Σ_n ‖u_n − N̂_n u_n‖² / (N σ²_u)`. It is the part that estimated projectors N̂ of
+/// constraints remove from observed velocities u, (n, N), which the true projectors leave unchanged (Lin, Howard, Vijayakumar,
+/// ICRA 2015). It does not need the truth. `learnt` is as in [`nppe`], σ² as in [`nupe`].
 ///
 /// # Errors
 /// As [`ncpe`].
@@ -66,7 +66,7 @@ pub fn npoe(
     nppe(velocities, |_sample, _velocity| {}, learnt)
 }
 
-/// [`ncpe`], compiled here for every projection.
+/// [`ncpe`] without a type parameter, compiled once for all projections.
 fn projected_error(
     truth: &DMatrix<f64>,
     learnt: &DMatrix<f64>,

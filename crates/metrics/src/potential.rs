@@ -20,9 +20,9 @@ pub fn potential_nmse(truth: &DVector<f64>, learnt: &DVector<f64>) -> Result<f64
     representable(squares.sum() / (n_samples as f64 * spread.variance))
 }
 
-/// Normalised error of aligned local potentials (A4): `Σ_n (φ̂_n + b_n − φ_n − µ)² / (N σ²_φ)`, with µ the mean of
-/// φ̂ + b − φ; the form of [`potential_nmse`] with the samples' own values φ̂ + b, their trajectory's offset added, in
-/// place of a model's.
+/// Normalised error of aligned local potentials (A4): `Σ_n (φ̂_n + b_n − φ_n − µ)² / (N σ²_φ)`, with µ the mean of φ̂ +
+/// b − φ. It equals [`potential_nmse`] with the samples' own values φ̂ plus their trajectory's offset b in place of a
+/// model's values.
 ///
 /// # Errors
 /// As [`potential_nmse`].

@@ -2,14 +2,15 @@ use nalgebra::{DMatrix, DMatrixView, DVector};
 
 use crate::{MetricsError, Series};
 
-/// A deviation of this share of the magnitude or less is rounding: a potential computed from states differs by a few
-/// machine epsilons (2e-16) between states where it is truly the same; a truth that varies so little teaches nothing.
+/// A deviation of at most this share of the magnitude is a rounding error: a potential computed from states differs by
+/// a few machine epsilons (2e-16) between states where it is truly the same. A truth that varies so little cannot serve
+/// as a reference.
 const ROUNDING: f64 = 1e-12;
 
-/// The true series' variance, with the unit it is measured in.
+/// The true series' variance, with its unit.
 pub(crate) struct Spread {
-    /// The largest magnitude in the truth. Values are divided by it before they are squared, so that neither very large
-    /// nor very small ones are lost.
+    /// The largest magnitude in the truth. Values are divided by it before they are squared, so that very large and
+    /// very small ones neither overflow nor underflow.
     pub(crate) unit: f64,
     /// Trace of the covariance (divided by N) in that unit, squared: σ² = variance · unit².
     pub(crate) variance: f64,
@@ -40,8 +41,8 @@ pub(crate) fn spread(truth: DMatrixView<'_, f64>, learnt: DMatrixView<'_, f64>) 
     Ok(Spread { unit, variance })
 }
 
-/// The mean of the columns. The second step takes out the rounding of the first, so that the deviations of a constant
-/// do not grow with the number of samples.
+/// The mean of the columns. The second step removes the rounding error of the first, so that the deviations of a
+/// constant do not grow with the number of samples.
 fn mean(samples: &DMatrix<f64>) -> DVector<f64> {
     let first = samples.column_mean();
     let rest = samples.column_iter().fold(DVector::zeros(samples.nrows()), |sum, sample| sum + (sample - &first));
@@ -58,7 +59,7 @@ fn require_finite(values: DMatrixView<'_, f64>, series: Series) -> Result<(), Me
     }
 }
 
-/// A result, unless it is beyond the largest number.
+/// Checks that a result has not overflowed.
 pub(crate) fn representable(result: f64) -> Result<f64, MetricsError> {
     if result.is_finite() { Ok(result) } else { Err(MetricsError::Overflow) }
 }

@@ -8,14 +8,14 @@ pub struct Summary {
     pub n: usize,
     /// Mean.
     pub mean: f64,
-    /// Sample standard deviation, the sum of squares divided by n − 1. A single value has none.
+    /// Sample standard deviation, with the sum of squares divided by n − 1; `None` for a single value.
     pub sd: Option<f64>,
-    /// Median; of an even count the mean of the middle two.
+    /// Median; for an even count, the mean of the middle two.
     pub median: f64,
 }
 
 impl Summary {
-    /// The summary of values in any order: the same values give the same bits.
+    /// Summarizes values; their order does not change any bit of the result.
     ///
     /// # Errors
     /// [`MetricsError::Empty`], [`MetricsError::NotFinite`] or [`MetricsError::Overflow`].

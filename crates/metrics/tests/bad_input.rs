@@ -1,4 +1,4 @@
-//! What has no error is refused, with the place of the fault; no NaN comes out.
+//! Input without a defined error is refused, with the place of the fault; results are never NaN.
 
 use metrics::{MetricsError, Series, Summary, alignment_nmse, ncpe, nupe, potential_nmse};
 use nalgebra::{DMatrix, DVector, dmatrix, dvector};
@@ -103,14 +103,14 @@ proptest! {
         let phi = dvector![constant, constant * (1.0 + 10f64.powf(exponent))];
         prop_assert!(potential_nmse(&phi, &phi).unwrap() == 0.0);
         let reversed = dvector![phi[1], phi[0]];
-        // Reversed, the error is twice the deviation.
+        // With the order reversed, the error is twice the deviation.
         prop_assert!((potential_nmse(&phi, &reversed).unwrap() - 4.0).abs() < 1e-5);
     }
 }
 
 #[test]
 fn a_long_constant_is_constant() {
-    // The plain sum of so many tenths is wrong by 1e-11 of itself.
+    // The plain sum of a million tenths has a relative error of 1e-11.
     let phi = DVector::repeat(1_000_000, 0.1);
     assert!(matches!(potential_nmse(&phi, &phi), Err(MetricsError::ConstantTruth { samples: 1_000_000, .. })));
 }

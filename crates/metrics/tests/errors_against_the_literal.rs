@@ -1,12 +1,12 @@
-//! (A1)–(A4) beside their literal loops, and what must not change them.
+//! Compares (A1)–(A4) with literal loops, and checks invariances.
 
 use metrics::{alignment_nmse, ncpe, npoe, nppe, nupe, potential_nmse};
 use nalgebra::{DMatrix, DVector, DVectorViewMut};
 use proptest::collection::vec;
 use proptest::prelude::*;
 
-/// True and learnt policy (n, N), a rotation of the state space, and for each sample how many of a basis' directions a
-/// constraint forbids there.
+/// True and learnt policy (n, N), a rotation of the state space, and the number of basis directions that a constraint
+/// forbids at each sample.
 #[derive(Debug)]
 struct Case {
     truth: DMatrix<f64>,
@@ -16,7 +16,7 @@ struct Case {
 }
 
 impl Case {
-    /// An orthogonal projection at each sample, along the axes that the rotation gives.
+    /// An orthogonal projection at each sample, along the rotated axes.
     fn project(&self, sample: usize, mut difference: DVectorViewMut<'_, f64>) {
         for direction in self.rotation.columns(0, self.forbidden[sample]).column_iter() {
             let along = direction.dot(&difference);
@@ -59,7 +59,7 @@ fn assert_close(found: f64, expected: f64) -> Result<(), TestCaseError> {
 }
 
 proptest! {
-    /// nPPE and nPOE beside their sums, with other constraints as the estimated ones.
+    /// Compares nPPE and nPOE with their literal sums, with other constraints as estimates.
     #[test]
     fn errors_of_constraints_are_the_literal_sums(case in case()) {
         let forbidden = case.forbidden.iter().rev().copied().collect();
@@ -153,7 +153,7 @@ proptest! {
             DMatrix::from_fn(policy.nrows(), policy.ncols(), |i, sample| policy[(i, (sample + turn) % policy.ncols())])
         };
         assert_close(nupe(&order(truth), &order(learnt)).unwrap(), free)?;
-        // An observer who moves along.
+        // A moving observer.
         let seen = |policy: &DMatrix<f64>| DMatrix::from_fn(policy.nrows(), policy.ncols(), |i, sample| policy[(i, sample)] - velocity[i]);
         let moving = nupe(&seen(truth), &seen(learnt)).unwrap();
         prop_assert!((moving - free).abs() <= 1e-8 * free.max(1.0));
@@ -169,7 +169,7 @@ proptest! {
         let unit = 10f64.powf(exponent);
         assert_close(potential_nmse(&(&truth * unit), &(&learnt * unit)).unwrap(), expected)?;
         let shifted = potential_nmse(&truth.add_scalar(theirs), &learnt.add_scalar(ours)).unwrap();
-        // A shift of 100 costs rounding of 1e-14 beside a deviation of 1e-3 or more.
+        // A shift of 100 causes rounding errors of 1e-14, compared with a deviation of at least 1e-3.
         prop_assert!((shifted - expected).abs() <= 1e-9 * expected.max(1.0));
     }
 }

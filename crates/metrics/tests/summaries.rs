@@ -10,13 +10,13 @@ proptest! {
         let summary = Summary::of(&values).unwrap();
         let n = values.len() as f64;
         let mean = values.iter().sum::<f64>() / n;
-        // The variance from pairs, without any mean: Σ_{i<j} (x_i − x_j)² / (n (n − 1)).
+        // The variance computed from pairs, without a mean: Σ_{i<j} (x_i − x_j)² / (n (n − 1)).
         let pairs = values.iter().flat_map(|x| values.iter().map(move |y| (x - y).powi(2)));
         let variance = pairs.sum::<f64>() / 2.0 / (n * (n - 1.0));
         prop_assert_eq!(summary.n, values.len());
         prop_assert!((summary.mean - mean).abs() < 1e-13);
         prop_assert!((summary.sd.unwrap() - variance.sqrt()).abs() < 1e-12);
-        // As many values lie below the median as above it.
+        // At most half of the values are below the median, and at most half above.
         let below = values.iter().filter(|&&value| value < summary.median).count();
         let above = values.iter().filter(|&&value| value > summary.median).count();
         prop_assert!(below <= values.len() / 2 && above <= values.len() / 2);

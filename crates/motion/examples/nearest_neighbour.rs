@@ -1,4 +1,4 @@
-//! A learner of your own: the velocity of the nearest recorded state, tried on movements that it did not learn from.
+//! A custom learner: the velocity of the nearest recorded state, tested on movements that it did not learn from.
 
 #![allow(clippy::print_stdout, reason = "a program")]
 

@@ -1,4 +1,4 @@
-//! Anomalies of movements: steps that stand out, movements that stand still or occur twice.
+//! Anomalies of movements: outlying steps, and movements that stand still or occur twice.
 
 use std::collections::HashMap;
 use std::hash::{DefaultHasher, Hash, Hasher};
@@ -7,9 +7,9 @@ use nalgebra::DMatrix;
 
 use crate::median::upper_median;
 
-/// A step longer than so many usual ones stands out.
+/// A step longer than this many typical steps is an outlier.
 const LONG: f64 = 10.0;
-/// So many steps about a step tell what is usual there, itself included.
+/// Number of steps, including the step itself, that determine the typical length around a step.
 const ABOUT: usize = 7;
 
 /// Whether all states (n, N) are the same.
@@ -17,20 +17,20 @@ pub fn stands_still(states: &DMatrix<f64>) -> bool {
     states.column_iter().all(|state| state == states.column(0))
 }
 
-/// A step that stands out from all about it.
+/// A step that is much longer than its neighbours.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LongStep {
-    /// The sample before it.
+    /// The sample before the step.
     pub sample: usize,
     /// Its length in median steps.
     pub times: f64,
 }
 
-/// The steps of a movement (n, N) that are over ten times the median of those that move, and over ten times most of the
-/// seven about them, in order.
+/// The steps of a movement (n, N) that are over ten times the median of its nonzero steps, and over ten times most of
+/// the seven steps around them, in order.
 ///
-/// Speeds may well differ more than that from start to end, and where a constraint gives way; a single step that stands
-/// out from its neighbours does not come about so.
+/// Speeds may differ by more than that between start and end, and where a constraint gives way; but these do not make a
+/// single step longer than all its neighbours.
 pub fn long_steps(states: &DMatrix<f64>) -> Vec<LongStep> {
     let squared = |i: usize| {
         let (here, next) = (states.column(i), states.column(i + 1));
@@ -50,19 +50,19 @@ pub fn long_steps(states: &DMatrix<f64>) -> Vec<LongStep> {
     long.map(|sample| LongStep { sample, times: steps[sample] / usual }).collect()
 }
 
-/// For each movement (n, N_k) the first before it that has the same states, if there is one. O(M) for M samples.
+/// For each movement (n, N_k), the first earlier one with the same states, if any. O(M) for M samples.
 pub fn duplicates<'a>(movements: impl IntoIterator<Item = &'a DMatrix<f64>>) -> Vec<Option<usize>> {
     first_before(&movements.into_iter().collect::<Vec<_>>(), |states| states.as_slice().chunks(states.nrows().max(1)))
 }
 
-/// For each movement (n, N_k) the first before it that is the same, run backwards, if there is one. O(M) for M samples.
+/// For each movement (n, N_k), the first earlier one with the same states in reverse order, if any. O(M) for M samples.
 pub fn mirror_images<'a>(movements: impl IntoIterator<Item = &'a DMatrix<f64>>) -> Vec<Option<usize>> {
     let movements: Vec<_> = movements.into_iter().collect();
     first_before(&movements, |states| states.as_slice().chunks(states.nrows().max(1)).rev())
 }
 
-/// For each movement the first before it whose states in order are those of this one in that order. Hashes say where to
-/// look, the states decide.
+/// For each movement, the first earlier one whose states equal this movement's states in the given order. Hashes find
+/// candidates, which are then compared.
 fn first_before<'a, S: Iterator<Item = &'a [f64]>>(
     movements: &[&'a DMatrix<f64>],
     order: impl Fn(&'a DMatrix<f64>) -> S,
@@ -80,9 +80,9 @@ fn first_before<'a, S: Iterator<Item = &'a [f64]>>(
     movements.iter().enumerate().map(find).collect()
 }
 
-/// The numbers of states one after the other.
+/// The bits of the states' numbers, one state after the other.
 fn bits<'a>(states: impl Iterator<Item = &'a [f64]>) -> impl Iterator<Item = u64> {
-    // Adding 0 makes −0 a 0.
+    // Adding 0 converts −0 to 0.
     states.flatten().map(|x| (x + 0.0).to_bits())
 }
 

@@ -4,7 +4,7 @@ use crate::{MotionError, Trajectory, upper_median};
 
 /// K observed movements of one system, all with the same dimensions of state and context; lengths may differ.
 ///
-/// They hold no constraint, so that a learner given `Demonstrations` cannot know it.
+/// They contain no constraints, so that a learner cannot use them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Demonstrations {
     trajectories: Vec<Trajectory>,
@@ -77,7 +77,7 @@ impl Demonstrations {
         self.trajectories.iter().map(Trajectory::n_samples).sum()
     }
 
-    /// The usual time step, in seconds: the median of the movements' steps, the upper of two.
+    /// The typical time step, in seconds: the median of the movements' steps, the upper of two.
     pub fn time_step(&self) -> f64 {
         upper_median(self.trajectories.iter().map(Trajectory::time_step).collect()).expect("there is a movement")
     }

@@ -1,6 +1,6 @@
 use thiserror::Error;
 
-/// What of a trajectory a value belongs to.
+/// The series of a trajectory to which a value belongs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Series {
     /// The states x.
@@ -18,7 +18,7 @@ impl std::fmt::Display for Series {
     }
 }
 
-/// Why observed movements cannot be used. All numbers count from 0.
+/// Reasons why observed movements cannot be used. All numbers count from 0.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum MotionError {
@@ -27,7 +27,7 @@ pub enum MotionError {
         "{series}, sample {sample}, dimension {dimension}: {value} is not a finite number; drop or interpolate the sample"
     )]
     NotFinite {
-        /// Which numbers.
+        /// The series.
         series: Series,
         /// Column of the value.
         sample: usize,
@@ -39,7 +39,7 @@ pub enum MotionError {
     /// A number of the context is NaN or infinite.
     #[error("context, number {number}: {value} is not a finite number; give one, or leave the movement out")]
     ContextNotFinite {
-        /// Which number of the context.
+        /// Index in the context.
         number: usize,
         /// The value itself.
         value: f64,
@@ -47,7 +47,7 @@ pub enum MotionError {
     /// A trajectory has fewer than two samples.
     #[error("the trajectory has {samples} sample(s), at least 2 are needed to see a movement; leave it out")]
     TooShort {
-        /// How many samples there are.
+        /// Number of samples.
         samples: usize,
     },
     /// The state has no dimension.
@@ -59,7 +59,7 @@ pub enum MotionError {
         /// The time step given, in seconds.
         time_step: f64,
     },
-    /// There is not one time stamp per sample.
+    /// The number of time stamps differs from the number of samples.
     #[error("there are {times} time stamps for {samples} samples; give one per sample")]
     StampCount {
         /// Number of time stamps.
@@ -118,15 +118,15 @@ pub enum MotionError {
     /// The share to hold out is not between 0 and 1.
     #[error("share {fraction} of what is held out: it must be more than 0 and less than 1")]
     Fraction {
-        /// The share given.
+        /// The given share.
         fraction: f64,
     },
     /// One of several trajectories is not valid.
     #[error("trajectory {trajectory}: {source}")]
     InTrajectory {
-        /// Which trajectory.
+        /// Index of the trajectory.
         trajectory: usize,
-        /// What is wrong with it.
+        /// Its fault.
         source: Box<MotionError>,
     },
 }

@@ -1,6 +1,6 @@
 use serde::{Deserialize, Serialize};
 
-/// Whether a policy may be used. The worst of its findings decides.
+/// Whether a policy may be used; determined by the worst of its findings.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
@@ -8,11 +8,11 @@ pub enum Verdict {
     Good,
     /// Check the findings before using it.
     Doubtful,
-    /// It is wrong, or no data test it.
+    /// The policy is wrong, or no data test it.
     DoNotUse,
 }
 
-/// Something odd about recordings or a policy. Those of [`Verdict::Good`] are remarks.
+/// An anomaly of recordings or a policy. Findings with [`Verdict::Good`] are remarks.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Finding {
@@ -28,13 +28,13 @@ pub struct Finding {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Decision {
-    /// "integration".
+    /// The subject, for instance "integration".
     pub what: String,
-    /// "velocity".
+    /// The choice, for instance "velocity".
     pub value: String,
-    /// "recorded; they agree with the steps".
+    /// The reason, for instance "recorded; they agree with the steps".
     pub why: String,
-    /// "--integration".
+    /// The flag, for instance "--integration".
     pub flag: String,
 }
 
@@ -44,6 +44,6 @@ pub struct Decision {
 pub struct LeftOut {
     /// Its name.
     pub episode: String,
-    /// "not connected".
+    /// The reason, for instance "not connected".
     pub why: String,
 }

@@ -40,7 +40,8 @@ impl Demonstrations {
 
     /// Every sample of a random share `fraction` of all trajectories, ascending: rounded down, at least one trajectory.
     ///
-    /// Samples of one movement resemble each other; only whole held-out movements show how well a learner generalises.
+    /// Samples of one movement resemble each other, so only whole held-out movements test how well a learner
+    /// generalises.
     ///
     /// # Errors
     /// [`MotionError::Fraction`] if the share is not more than 0 and less than 1.
@@ -53,7 +54,7 @@ impl Demonstrations {
     }
 }
 
-/// So many of `0..count` without repetition, ascending.
+/// Draws a share of `0..count` without repetition, ascending.
 fn drawn<R: Rng + ?Sized>(count: usize, fraction: f64, rng: &mut R) -> Result<Vec<usize>, MotionError> {
     if !(fraction > 0.0 && fraction < 1.0) {
         return Err(MotionError::Fraction { fraction });

@@ -5,15 +5,15 @@ use rand::Rng;
 
 use crate::{Demonstrations, Policy, Potential, SampleIndex};
 
-/// Why a learner could not learn; each learner's own error, whose message says what, where and what next.
+/// Reasons why a learner failed. Each learner has its own error type, whose message contains the fault, its place and a remedy.
 pub type LearnError = Box<dyn std::error::Error + Send + Sync>;
 
 /// A method that learns a policy from demonstrations.
 ///
 /// A learner is a plain set of parameters. `Debug` prints all of them: equal texts mean equal learners.
 pub trait Learner: Debug + Send + Sync {
-    /// Learns from all samples but those held out, which may come in any order. The same generator gives the same bits
-    /// at any number of threads.
+    /// Learns from all samples except the held-out ones, which may be in any order. The same generator gives the same bits with any number
+    /// of threads.
     ///
     /// # Errors
     /// [`LearnError`] for parameters out of range, or demonstrations that the learner cannot use.
@@ -30,22 +30,22 @@ pub trait Learner: Debug + Send + Sync {
 pub struct Certainty {
     /// [`LearntPolicy::support`], (N).
     pub support: Vec<f64>,
-    /// Standard deviations of every component of the action, (n, N), in units of the state per second; none if the learner has no
+    /// Standard deviations of every component of the action, (n, N), in units of the state per second; `None` if the learner has no
     /// estimate.
     pub deviations: Option<DMatrix<f64>>,
 }
 
 /// A learnt policy, with its potential, support, uncertainty and warnings.
 pub trait LearntPolicy: Policy + Debug {
-    /// The potential that the policy descends; none if the learner assumes none.
+    /// The potential that the policy descends; `None` if the learner assumes none.
     fn potential(&self) -> Option<&dyn Potential> {
         None
     }
 
-    /// How well the demonstrations support a state, (n): 1 amid them, 0 where the action is a mere default.
+    /// How well the demonstrations support a state, (n): 1 close to them, 0 where the action is only a default.
     ///
-    /// Each learner has its own measure: LWPR the largest activation of a receptive field that takes part, a Gaussian
-    /// process 1 − posterior / prior variance.
+    /// Each learner has its own measure: LWPR the largest activation of a contributing receptive field, a Gaussian process 1 − posterior /
+    /// prior variance.
     fn support(&self, state: DVectorView<'_, f64>) -> f64;
 
     /// Writes the standard deviation of every component of the action, (n), into `deviation`, in units of the state per
@@ -54,8 +54,8 @@ pub trait LearntPolicy: Policy + Debug {
         false
     }
 
-    /// [`support`](Self::support) and [`action_sd_into`](Self::action_sd_into) at many states, (n, N): the same numbers as one by one.
-    /// A Gaussian process is several times faster so.
+    /// [`support`](Self::support) and [`action_sd_into`](Self::action_sd_into) at many states, (n, N), with the same numbers as for single
+    /// states. For a Gaussian process this is several times faster.
     fn certainty(&self, states: DMatrixView<'_, f64>) -> Certainty {
         let support = states.column_iter().map(|state| self.support(state)).collect();
         let (mut deviations, mut deviation) = (DMatrix::zeros(self.dim(), states.ncols()), DVector::zeros(self.dim()));
@@ -67,13 +67,13 @@ pub trait LearntPolicy: Policy + Debug {
         Certainty { support, deviations: known.then_some(deviations) }
     }
 
-    /// Whether [`support`](Self::support) is at least `least` at each of some states (n, N), as [`certainty`](Self::certainty) says. For a
-    /// Gaussian process this is several times faster: where some of its rows support a state, so do all.
+    /// Whether [`support`](Self::support) is at least `least` at each of these states (n, N), as in [`certainty`](Self::certainty). For a
+    /// Gaussian process this is several times faster: a state supported by some of its rows is supported by all.
     fn supported(&self, states: DMatrixView<'_, f64>, least: f64) -> Vec<bool> {
         self.certainty(states).support.into_iter().map(|support| support >= least).collect()
     }
 
-    /// The trajectories used for learning, ascending; none if all were.
+    /// The trajectories used for learning, ascending; `None` if all were.
     fn kept(&self) -> Option<&[usize]> {
         None
     }

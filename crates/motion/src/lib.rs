@@ -1,6 +1,6 @@
-//! The types that the other crates share: what was recorded ([`Recordings`], [`Episode`]) and what is odd about it
-//! ([`Finding`], [`LeftOut`]), observations to learn from ([`Trajectory`], [`Demonstrations`]), the functions to learn
-//! ([`Policy`], [`Potential`]), and the interface of all learners ([`Learner`], which returns a [`LearntPolicy`]).
+//! The types that the other crates share: recordings ([`Recordings`], [`Episode`]) and their anomalies ([`Finding`],
+//! [`LeftOut`]), observations to learn from ([`Trajectory`], [`Demonstrations`]), the functions to learn ([`Policy`],
+//! [`Potential`]), and the interface of all learners ([`Learner`], which returns a [`LearntPolicy`]).
 //!
 //! Samples are **columns**: a movement of `N` samples of an `n`-dimensional state is an (n, N) matrix, so that a state
 //! is a contiguous view. Times are seconds; a state has the units of its dimensions (radians, metres).
@@ -16,7 +16,7 @@
 //! # Ok::<(), motion::MotionError>(())
 //! ```
 //!
-//! A learner of your own returns a policy with the support that the demonstrations give it:
+//! A custom learner returns a policy together with its support by the demonstrations:
 //!
 //! ```
 //! use motion::{Demonstrations, LearnError, Learner, LearntPolicy, Policy, SampleIndex};
@@ -93,7 +93,7 @@ pub use scaled::scaled;
 pub use times::{Times, whole_step};
 pub use trajectory::Trajectory;
 
-/// The program of the README, compiled.
+/// Compiles the program in the README.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;

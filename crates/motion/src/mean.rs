@@ -1,7 +1,7 @@
-/// By how much equal values and their mean may differ, as a share of the mean.
+/// Largest rounding error between equal values and their mean, relative to the mean.
 const ROUNDING: f64 = 1e-13;
 
-/// The mean of values, and its standard error sd/√K, sd with K − 1: not finite of fewer than two values. O(K).
+/// The mean of values and its standard error sd/√K, with sd divided by K − 1; not finite for fewer than two values. O(K).
 pub fn mean_and_error(values: &[f64]) -> (f64, f64) {
     let count = values.len() as f64;
     let mean = values.iter().sum::<f64>() / count;
@@ -9,8 +9,8 @@ pub fn mean_and_error(values: &[f64]) -> (f64, f64) {
     (mean, (variance / count).sqrt())
 }
 
-/// Standard deviation about the mean, divided by N; 0 where values differ by rounding alone. Neither sums nor squares of finite
-/// values overflow.
+/// Standard deviation about the mean, divided by N; 0 if values differ by rounding alone. Sums and squares of finite values do
+/// not overflow.
 pub fn standard_deviation(values: impl Iterator<Item = f64> + Clone) -> f64 {
     let count = values.clone().count() as f64;
     let mean: f64 = values.clone().map(|value| value / count).sum();
@@ -29,7 +29,7 @@ mod tests {
 
     #[test]
     fn equal_values_do_not_vary() {
-        // Their mean is not .1.
+        // Their computed mean is not .1.
         assert_eq!(standard_deviation(std::iter::repeat_n(0.1, 400)), 0.0);
         assert!((standard_deviation([1.0, 3.0].into_iter()) - 1.0).abs() < 1e-15);
         assert!((standard_deviation([-1e300, 1e300].into_iter()) / 1e300 - 1.0).abs() < 1e-15);
@@ -44,7 +44,7 @@ mod tests {
     }
 
     proptest! {
-        /// Values that are moved and stretched move the mean and stretch both.
+        /// Shifting and scaling the values shifts the mean and scales both.
         #[test]
         fn they_follow_the_values(values in prop::collection::vec(-5.0..5.0_f64, 2..40), by in -5.0..5.0_f64, times in 0.1..10.0_f64) {
             let (mean, error) = mean_and_error(&values);

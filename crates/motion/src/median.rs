@@ -1,10 +1,10 @@
-/// The middle value, the upper of two; none of no values. O(N).
+/// The middle value, the upper of two; `None` without values. O(N).
 pub fn upper_median(mut values: Vec<f64>) -> Option<f64> {
     let middle = values.len() / 2;
     (!values.is_empty()).then(|| *values.select_nth_unstable_by(middle, f64::total_cmp).1)
 }
 
-/// The middle value, or the mean of the middle two; none of no values. O(N).
+/// The middle value, or the mean of the middle two; `None` without values. O(N).
 pub fn median(mut values: Vec<f64>) -> Option<f64> {
     let (middle, even) = (values.len() / 2, values.len().is_multiple_of(2));
     if values.is_empty() {

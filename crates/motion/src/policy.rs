@@ -2,12 +2,12 @@ use nalgebra::{DMatrix, DMatrixView, DVector, DVectorView, DVectorViewMut};
 
 /// An autonomous movement policy u = π(x) (1): the desired velocity at a state.
 ///
-/// Where a method takes a vector of another length than [`Policy::dim`], it panics.
+/// Methods panic if a vector's length differs from [`Policy::dim`].
 pub trait Policy: Send + Sync {
     /// Dimension n of state and action.
     fn dim(&self) -> usize;
 
-    /// Writes π(x), (n), into `action`, in units of the state per second. Allocates nothing.
+    /// Writes π(x), (n), into `action`, in units of the state per second. Does not allocate.
     fn action_into(&self, state: DVectorView<'_, f64>, action: DVectorViewMut<'_, f64>);
 
     /// π(x), (n), in units of the state per second.
@@ -17,7 +17,8 @@ pub trait Policy: Send + Sync {
         action
     }
 
-    /// π(x) at many states, (n, N), each a column, in units of the state per second: the same numbers as one by one.
+    /// π(x) at many states, (n, N), one per column, in units of the state per second, with the same numbers as for
+    /// single states.
     fn actions(&self, states: DMatrixView<'_, f64>) -> DMatrix<f64> {
         let (mut actions, mut action) = (DMatrix::zeros(self.dim(), states.ncols()), DVector::zeros(self.dim()));
         for (state, mut place) in states.column_iter().zip(actions.column_iter_mut()) {
@@ -30,7 +31,7 @@ pub trait Policy: Send + Sync {
 
 /// A scalar potential φ(x) whose negative gradient is a policy (4).
 ///
-/// Where a method takes a vector of another length than [`Potential::dim`], it panics.
+/// Methods panic if a vector's length differs from [`Potential::dim`].
 pub trait Potential: Send + Sync {
     /// Dimension n of the state.
     fn dim(&self) -> usize;
@@ -38,7 +39,7 @@ pub trait Potential: Send + Sync {
     /// φ(x), in units of the state squared per second.
     fn value(&self, state: DVectorView<'_, f64>) -> f64;
 
-    /// Writes ∇φ(x), (n), into `gradient`, in units of the state per second. Allocates nothing.
+    /// Writes ∇φ(x), (n), into `gradient`, in units of the state per second. Does not allocate.
     fn gradient_into(&self, state: DVectorView<'_, f64>, gradient: DVectorViewMut<'_, f64>);
 
     /// ∇φ(x), (n), in units of the state per second.

@@ -7,17 +7,17 @@ use crate::median::upper_median;
 use crate::times::whole_step;
 use crate::{Finding, Labels, MotionError, Times, Trajectory};
 
-/// What was recorded: n channels of state, and episodes of any length.
+/// Recorded data: n channels of state, and episodes of any length.
 ///
-/// Of every episode, positions have n rows and a column a sample, stamps ascend, and numbers are finite. It may be too
-/// short to be a movement: `prepare` leaves it out and reports it.
+/// In every episode, positions have n rows and one column per sample, stamps ascend, and numbers are finite. It may be too
+/// short to be a movement; then `prepare` leaves it out and reports it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Recordings {
     /// Dimensions of the state, n of them.
     pub state: Vec<Channel>,
-    /// One entry a movement, in the order of the file.
+    /// One entry per movement, in the order of the file.
     pub episodes: Vec<Episode>,
-    /// What was found while reading; nothing of it prevented reading.
+    /// The reader's findings, none of which prevented reading.
     pub findings: Vec<Finding>,
 }
 
@@ -25,69 +25,70 @@ pub struct Recordings {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Channel {
-    /// As in the file: `x`, `l_elbow`.
+    /// The name as in the file: `x`, `l_elbow`.
     pub name: String,
-    /// If the file or the user says: `m`, `rad`; a velocity has this unit per second.
+    /// The unit if the file or the user gives one: `m`, `rad`; a velocity has this unit per second.
     pub unit: Option<String>,
 }
 
 /// One recorded movement of N samples.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Episode {
-    /// As in the file: "3", "take 3", "demo_3".
+    /// The name as in the file: "3", "take 3", "demo_3".
     pub name: String,
-    /// Where it comes from, for messages.
+    /// Its origin, for messages.
     pub source: Source,
-    /// When each sample was taken, N of them; stamps ascend.
+    /// The time of each sample, (N); stamps ascend.
     pub times: Times,
-    /// One column a sample, (n, N).
+    /// Positions, one column per sample, (n, N).
     pub positions: DMatrix<f64>,
-    /// Units of the state per second, (n, N).
+    /// Velocities in units of the state per second, (n, N).
     pub velocities: Option<DMatrix<f64>>,
-    /// Names of the constraints or tasks that it was recorded under.
+    /// Names of the constraints or tasks under which it was recorded.
     pub constraint: Option<Labels>,
-    /// What it depended on and what stayed as it was, (p); empty as it is read, since preparation tells context from state.
+    /// The context, which influences the movement and is constant during it, (p). Empty after reading, because preparation
+    /// separates context from state.
     pub context: DVector<f64>,
 }
 
-/// Where an episode comes from.
+/// The origin of an episode.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Source {
     /// Name of the file, without folders; empty if there is none.
     pub file: String,
-    /// Where its samples are in the file; none where that says nothing.
+    /// Position of its samples in the file; `None` if it is not meaningful.
     pub rows: Option<Rows>,
 }
 
-/// Where samples are in a file.
+/// Position of samples in a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Rows {
-    /// What is counted: "line", "row", "message", "sample".
+    /// The unit that is counted: "line", "row", "message", "sample".
     pub word: &'static str,
-    /// Of the first sample, counted from 1 as the format does.
+    /// The first sample's, counted from 1 as in the format.
     pub first: u64,
-    /// Of the last.
+    /// The last sample's.
     pub last: u64,
 }
 
-/// Words in the names of what movements depend on and what does not move.
+/// Words in the names of context channels.
 const CONTEXTS: [&str; 8] = ["goal", "target", "object", "obj", "load", "payload", "mass", "context"];
 
-/// Whether a name is one of a context: goal, target, object, load and their like.
+/// Whether a name is that of a context: goal, target, object, load and the like.
 pub fn is_called_context(name: &str) -> bool {
     let name = name.to_lowercase();
     let is_word = |word: &str| CONTEXTS.contains(&word.trim_end_matches(|c: char| c.is_ascii_digit()));
     name.contains("environment_state") || name.split(|c: char| !c.is_alphanumeric()).any(is_word)
 }
 
-/// Lent, to be copied where they are needed.
+/// Borrows the recordings; they are cloned when needed.
 impl<'a> From<&'a Recordings> for Cow<'a, Recordings> {
     fn from(recordings: &'a Recordings) -> Self {
         Cow::Borrowed(recordings)
     }
 }
 
-/// Handed over.
+/// Takes ownership of the recordings.
 impl From<Recordings> for Cow<'_, Recordings> {
     fn from(recordings: Recordings) -> Self {
         Cow::Owned(recordings)
@@ -95,8 +96,8 @@ impl From<Recordings> for Cow<'_, Recordings> {
 }
 
 impl Recordings {
-    /// The usual time between samples in seconds: the median over all episodes as a [`whole_step`]. A step that was given
-    /// rather than measured (all stamps are multiples of it) is taken as it is. 0 without a step.
+    /// The typical time between samples in seconds: the median over all episodes as a [`whole_step`]. A step that was given
+    /// rather than measured (all stamps are multiples of it) is returned unchanged. 0 without a step.
     pub fn time_step(&self) -> f64 {
         let times = || self.episodes.iter().map(|episode| &episode.times);
         let mut given = times().filter(|times| times.len() > 1).map(given_step);
@@ -111,13 +112,13 @@ impl Recordings {
     }
 }
 
-/// The step of which all stamps are multiples.
+/// The step if all stamps are multiples of it.
 fn given_step(times: &Times) -> Option<f64> {
     let step = times.seconds(0, 1);
     (0..times.len()).all(|sample| times.seconds(0, sample) == sample as f64 * step).then_some(step)
 }
 
-/// The median is taken over at most so many steps.
+/// Largest number of steps from which the median is computed.
 const MOST_STEPS: usize = 1_000_000;
 
 impl Episode {
@@ -131,7 +132,7 @@ impl Episode {
         self.positions.column(sample + 1) - self.positions.column(sample)
     }
 
-    /// Samples `from` to `to`, the last not included.
+    /// Samples `from` to `to`, excluding the last.
     #[must_use]
     pub fn part(&self, from: usize, to: usize) -> Episode {
         let at = |sample: usize| self.row(sample).map(|(_, row)| row);
@@ -156,10 +157,10 @@ impl Episode {
         }
     }
 
-    /// As a learner takes it.
+    /// The episode as a movement for a learner.
     ///
     /// # Errors
-    /// [`MotionError`] if it is no valid [`Trajectory`].
+    /// [`MotionError`] if it is not a valid [`Trajectory`].
     pub fn into_trajectory(self) -> Result<Trajectory, MotionError> {
         let trajectory = match self.times {
             Times::Even { step, .. } => Trajectory::new(self.positions, step)?,
@@ -172,7 +173,7 @@ impl Episode {
         }
     }
 
-    /// Where a sample is in its file: "demos.csv, line 17 (episode 1)".
+    /// The place of a sample in its file: "demos.csv, line 17 (episode 1)".
     pub fn place(&self, sample: usize) -> String {
         let (name, file) = (&self.name, &self.source.file);
         match self.row(sample) {
@@ -182,7 +183,7 @@ impl Episode {
         }
     }
 
-    /// The row of a sample and what it is called, where rows are consecutive.
+    /// The row of a sample with its unit, if rows are consecutive.
     fn row(&self, sample: usize) -> Option<(&'static str, u64)> {
         let rows = self.source.rows?;
         (rows.last.checked_sub(rows.first)? + 1 == self.n_samples() as u64)

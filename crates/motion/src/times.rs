@@ -3,7 +3,7 @@ use std::ops::Range;
 
 use crate::median::upper_median;
 
-/// When the samples of a movement were taken, in seconds.
+/// Times at which the samples of a movement were taken, in seconds.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Times {
     /// Evenly spaced.
@@ -31,7 +31,7 @@ impl Times {
         self.len() == 0
     }
 
-    /// Seconds from sample `from` to sample `to`, which is not before it.
+    /// Seconds from sample `from` to sample `to`, which must not be before it.
     pub fn seconds(&self, from: usize, to: usize) -> f64 {
         match self {
             Times::Even { step, .. } => step * (to - from) as f64,
@@ -49,7 +49,7 @@ impl Times {
         (1..self.len()).map(|sample| self.seconds(sample - 1, sample))
     }
 
-    /// The median step, the upper of two; none with fewer than two samples. O(N).
+    /// The median step, the upper of two; `None` with fewer than two samples. O(N).
     pub fn median_step(&self) -> Option<f64> {
         match self {
             Times::Even { step, len } => (*len > 1).then_some(*step),
@@ -57,7 +57,7 @@ impl Times {
         }
     }
 
-    /// The time of every sample, (N); from 0 where they are evenly spaced.
+    /// The time of every sample, (N); starting at 0 if they are evenly spaced.
     pub fn stamps(&self) -> Cow<'_, [f64]> {
         match self {
             Times::Even { step, len } => Cow::Owned((0..*len).map(|sample| step * sample as f64).collect()),
@@ -65,7 +65,7 @@ impl Times {
         }
     }
 
-    /// The time stamps, to be changed.
+    /// The time stamps, mutable.
     pub fn stamps_mut(&mut self) -> &mut Vec<f64> {
         if let Times::Even { .. } = self {
             *self = Times::Stamped(self.stamps().into_owned());
@@ -76,7 +76,7 @@ impl Times {
         }
     }
 
-    /// Those of some samples in a row.
+    /// The times of a range of samples.
     #[must_use]
     pub fn part(&self, samples: Range<usize>) -> Times {
         match self {
@@ -85,7 +85,7 @@ impl Times {
         }
     }
 
-    /// With all seconds divided by `divisor`.
+    /// The times with all seconds divided by `divisor`.
     #[must_use]
     pub fn divided_by(&self, divisor: f64) -> Times {
         match self {
@@ -95,18 +95,18 @@ impl Times {
     }
 }
 
-/// Time stamps, one after another.
+/// Collects time stamps.
 impl FromIterator<f64> for Times {
     fn from_iter<I: IntoIterator<Item = f64>>(stamps: I) -> Self {
         Times::Stamped(stamps.into_iter().collect())
     }
 }
 
-/// A step this near to a whole one is that one, as a share of it.
+/// A step within this relative distance of a whole one is replaced by it.
 const WHOLE: f64 = 1e-3;
 
-/// A measured time step in seconds without the rounding of its stamps: 1/k s or k ms, whichever is nearer, if that is within
-/// 0.1 % of it.
+/// A measured time step in seconds without the rounding error of its stamps: 1/k s or k ms, whichever is nearer, if it is
+/// within 0.1 % of the step.
 pub fn whole_step(step: f64) -> f64 {
     let near = |candidate: f64| (candidate > 0.0 && (candidate / step - 1.0).abs() < WHOLE).then_some(candidate);
     let rate = near(1.0 / (1.0 / step).round()).filter(|step| step.is_finite());

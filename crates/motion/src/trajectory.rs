@@ -4,10 +4,10 @@ use nalgebra::{DMatrix, DVector, DVectorView};
 
 use crate::{Labels, MotionError, Series, Times, scaled};
 
-/// One observed movement: states x₁..x_N, evenly spaced in time or each with its stamp, and the velocities u₁..u_N where
-/// they were recorded.
+/// One observed movement: states x₁..x_N, evenly spaced in time or each with a stamp, and the velocities u₁..u_N if they were
+/// recorded.
 ///
-/// A checked value: at least two samples, at least one dimension, every number finite, stamps that ascend. Clones share the numbers.
+/// The values are checked: at least two samples, at least one dimension, finite numbers, ascending stamps. Clones share the numbers.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Trajectory {
     states: Arc<DMatrix<f64>>,
@@ -45,13 +45,13 @@ impl Trajectory {
     /// # Errors
     /// As [`Trajectory::new`] and [`Trajectory::with_times`].
     pub fn stamped(times: Vec<f64>, states: DMatrix<f64>) -> Result<Self, MotionError> {
-        // Of two stamps far from 0 the step has lost digits.
+        // If the stamps are far from 0, the difference of two has lost digits.
         let step = match times[..] {
             [first, second, ..] if are_even(&times, second - first) => second - first,
             [first, .., last] => (last - first) / (times.len() - 1) as f64,
             _ => 1.0,
         };
-        // A step that is none belongs to stamps that do not ascend.
+        // An invalid step results from stamps that do not ascend, which `with_times` reports.
         let step = if step.is_finite() && step > 0.0 { step } else { 1.0 };
         Trajectory::new(states, step)?.with_times(times)
     }
@@ -68,8 +68,8 @@ impl Trajectory {
         Ok(Trajectory { velocities: Some(Arc::new(velocities)), ..self })
     }
 
-    /// The same movement with its context c, (p): what it depended on besides the state and what stayed as it was, such as a goal,
-    /// the place of an object, or a load.
+    /// The same movement with its context c, (p): quantities besides the state that influenced it and were constant, such as a goal,
+    /// the position of an object, or a load.
     ///
     /// # Errors
     /// [`MotionError::ContextNotFinite`].
@@ -80,7 +80,7 @@ impl Trajectory {
         }
     }
 
-    /// The same movement with the names of its constraints, which tell where they switched; none if that is not known.
+    /// The same movement with the names of its constraints, which show where constraints switch; `None` if unknown.
     #[must_use]
     pub fn with_labels(self, labels: Option<Labels>) -> Self {
         Trajectory { labels, ..self }
@@ -92,7 +92,7 @@ impl Trajectory {
     /// [`MotionError::NotFinite`] if a product is not.
     ///
     /// # Panics
-    /// If there is not one factor for each dimension.
+    /// If the number of factors differs from the dimension.
     pub fn scaled(&self, factors: &DVector<f64>) -> Result<Self, MotionError> {
         let anew = self.with_states(scaled(&self.states, factors))?;
         match &self.velocities {
@@ -115,8 +115,8 @@ impl Trajectory {
         }
     }
 
-    /// The same movement with a time stamp for every sample, (N), in seconds, strictly ascending. Stamps that are even to
-    /// their rounding leave the movement as it is.
+    /// The same movement with a time stamp for every sample, (N), in seconds, strictly ascending. Stamps that are even up to
+    /// rounding leave the movement unchanged.
     ///
     /// # Errors
     /// [`MotionError::StampCount`] or [`MotionError::StampOrder`].
@@ -143,7 +143,7 @@ impl Trajectory {
         self.velocities.as_deref()
     }
 
-    /// States and velocities, (n, N) each, copied only where a clone of the movement has them too.
+    /// States and velocities, (n, N) each; they are copied only if a clone of the movement shares them.
     pub fn into_matrices(self) -> (DMatrix<f64>, Option<DMatrix<f64>>) {
         (Arc::unwrap_or_clone(self.states), self.velocities.map(Arc::unwrap_or_clone))
     }
@@ -153,7 +153,7 @@ impl Trajectory {
         &self.context
     }
 
-    /// Names of the constraints that acted, where they are known.
+    /// Names of the constraints on the movement, if known.
     pub fn labels(&self) -> Option<&Labels> {
         self.labels.as_ref()
     }
@@ -168,12 +168,12 @@ impl Trajectory {
         velocities
     }
 
-    /// Seconds between two samples; the median where they are unevenly spaced, in O(N).
+    /// Seconds between two samples; the median if they are unevenly spaced, in O(N).
     pub fn time_step(&self) -> f64 {
         self.times.median_step().expect("a movement has two samples")
     }
 
-    /// Time stamps of the samples, (N), in seconds; none if they are evenly spaced.
+    /// Time stamps of the samples, (N), in seconds; `None` if they are evenly spaced.
     pub fn times(&self) -> Option<&[f64]> {
         match &*self.times {
             Times::Even { .. } => None,
@@ -181,7 +181,7 @@ impl Trajectory {
         }
     }
 
-    /// Seconds from sample `from` to sample `to`, which is not before it.
+    /// Seconds from sample `from` to sample `to`, which must not be before it.
     pub fn seconds(&self, from: usize, to: usize) -> f64 {
         self.times.seconds(from, to)
     }
@@ -208,7 +208,7 @@ impl Trajectory {
     }
 }
 
-/// Whether stamps are a step apart, to their rounding.
+/// Whether stamps are one step apart, up to rounding.
 fn are_even(times: &[f64], step: f64) -> bool {
     let rounding = 4.0 * f64::EPSILON * times[0].abs().max(times[times.len() - 1].abs());
     times.iter().enumerate().all(|(sample, time)| (time - times[0] - step * sample as f64).abs() <= rounding)

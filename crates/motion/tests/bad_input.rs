@@ -1,4 +1,4 @@
-//! What cannot be a movement is refused, with the place of the fault.
+//! Invalid movements are refused, with the place of the fault.
 
 use motion::{Demonstrations, MotionError, Series, Trajectory};
 use nalgebra::DMatrix;
@@ -32,7 +32,7 @@ fn a_trajectory() {
     }
 }
 
-/// NaN differs from itself, so these compare by their fields.
+/// NaN differs from itself, so the fields are compared.
 #[test]
 fn nan() {
     assert!(matches!(

@@ -1,4 +1,4 @@
-//! A context belongs to its movement, whatever becomes of the states.
+//! A movement keeps its context when its states change.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 

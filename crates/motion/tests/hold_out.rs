@@ -1,4 +1,4 @@
-//! Samples held out: how many, of what, and the same for the same seed.
+//! Held-out samples: their number, their movements, and reproducibility with a seed.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 

@@ -11,7 +11,7 @@ fn movement(states: &[f64], time_step: f64) -> Trajectory {
 }
 
 proptest! {
-    /// Even stamps, wherever they begin, leave every bit as it was.
+    /// Even stamps, starting at any time, change no bit.
     #[test]
     fn even_stamps_change_nothing(
         states in prop::collection::vec(-3.0..3.0f64, 2..40), time_step in 1e-3..10.0f64, from in -5.0..5.0f64,
@@ -25,7 +25,7 @@ proptest! {
         prop_assert_eq!(stamped.seconds(0, 1), time_step);
     }
 
-    /// Stamps far from 0 are still even, although the step between the first two has lost digits.
+    /// Stamps far from 0 are recognised as even, although the step between the first two has lost digits.
     #[test]
     fn even_stamps_are_recognised(count in 2usize..2000, milliseconds in 1u32..1000, from in -1e5..1e5f64) {
         let step = f64::from(milliseconds) / 1000.0;

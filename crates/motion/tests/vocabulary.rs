@@ -1,4 +1,4 @@
-//! What is put in comes out, and a policy is the negative gradient of its potential.
+//! Values are stored unchanged, and a policy is the negative gradient of its potential.
 
 use motion::{Demonstrations, NegativeGradient, Policy, Potential, Trajectory};
 use nalgebra::{DMatrix, DVector, DVectorView, DVectorViewMut};

@@ -1,4 +1,5 @@
-//! Writes a page that compares two learners by strips of dots, and the same as a table in Markdown: `results_page [FILE]`.
+//! Writes a page that compares two learners by strips of dots, and the same comparison as a Markdown table: `results_page
+//! [FILE]`.
 
 #![allow(clippy::print_stdout, reason = "a program")]
 
@@ -12,7 +13,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let default = || std::env::temp_dir().join("results.html");
     let path = std::env::args().nth(1).map_or_else(default, PathBuf::from);
 
-    // Errors on five data sets; the third of the second learner is missing.
+    // Errors on five data sets; the second learner's third is missing.
     let learners = [
         ("slope GP", [0.02, 0.03, 0.07, 0.02, 0.04].map(Some)),
         ("naive", [Some(0.5), Some(0.61), None, Some(0.44), Some(0.52)]),

@@ -5,32 +5,32 @@ use crate::figure::enlarged;
 const STYLE: &str = include_str!("report.css");
 const SCRIPT: &str = include_str!("report.js");
 
-/// What the page may do: show what is in it. Nothing is fetched.
+/// The page may show only embedded contents; it fetches nothing.
 const POLICY: &str = "default-src 'none'; img-src data:; style-src 'unsafe-inline'; script-src 'unsafe-inline'";
 
-/// A page: style, script and pictures are in it.
+/// A page with embedded style, script and pictures.
 #[derive(Debug)]
 pub struct Document<'a> {
-    /// Of the window.
+    /// Title of the window.
     pub title: &'a str,
-    /// Over the contents.
+    /// Name above the contents.
     pub name: &'a str,
-    /// What comes first.
+    /// The first part.
     pub opening: Part,
-    /// What follows, in sections.
+    /// The following parts, as sections.
     pub parts: Vec<Part>,
-    /// A style sheet of one's own, after that of the page.
+    /// An additional style sheet, after that of the page.
     pub style: &'a str,
 }
 
-/// A part of the page that can be gone to.
+/// A part of the page with an address.
 #[derive(Debug)]
 pub struct Part {
-    /// Its address within the page. Of the opening: that of its heading, which is in its body.
+    /// Its address within the page. That of the opening belongs to the heading in its body.
     pub id: String,
-    /// In the contents.
+    /// Its title in the contents.
     pub title: String,
-    /// What is there.
+    /// Its HTML.
     pub body: Markup,
 }
 
@@ -68,7 +68,7 @@ impl Document<'_> {
         html! {
             nav aria-label="Contents" {
                 p .name { (self.name) }
-                // The script folds it in a narrow window.
+                // The script folds the contents in a narrow window.
                 details open {
                     summary { "Contents" }
                     ol {

@@ -1,12 +1,12 @@
-//! Sentences in which `**words**` are emphasised and others stand as code between backticks. Terms stay together on a
-//! line, and what follows `^` is a power.
+//! Sentences with emphasis (`**words**`), code (between backticks) and powers (after `^`). Terms are not broken across
+//! lines.
 
 use maud::{Markup, html};
 
-/// Letters that a term in brackets may have.
+/// Largest number of letters of a term in brackets.
 const LONGEST: usize = 24;
 
-/// A sentence as HTML. Between `**` and `**` stands what is emphasised, between backticks code, after `^` a power; terms
+/// A sentence as HTML: text between `**` and `**` is emphasised, between backticks it is code, after `^` a power. Terms
 /// such as `[-1, 1]^3` are not broken at the end of a line.
 pub fn emphasised(text: &str) -> Markup {
     html! {
@@ -24,7 +24,7 @@ fn coded(text: &str) -> Markup {
     }
 }
 
-/// Words, of which those that are terms are not broken.
+/// Words with line breaks prevented within terms.
 fn termed(text: &str) -> Markup {
     let text = text.replace(" = ", "\u{a0}=\u{a0}").replace(" %", "\u{a0}%").replace(" cm", "\u{a0}cm");
     html! {
@@ -35,7 +35,7 @@ fn termed(text: &str) -> Markup {
     }
 }
 
-/// Words with the space after them; what is in square brackets is one word.
+/// Words with the space after them; text in square brackets is one word.
 fn words(text: &str) -> Vec<&str> {
     let mut words = vec![];
     let mut rest = text;
@@ -53,7 +53,7 @@ fn words(text: &str) -> Vec<&str> {
     words
 }
 
-/// An interval, a power, or a name with a hyphen next to a single letter.
+/// Whether a word is an interval, a power, or a name with a hyphen next to a single letter.
 fn is_term(word: &str) -> bool {
     let name = word.trim_matches(|letter: char| !letter.is_alphanumeric());
     let mut parts = name.split('-');

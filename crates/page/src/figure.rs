@@ -1,4 +1,4 @@
-//! A figure on a card of its own.
+//! A figure on a card.
 
 use std::fmt::Write as _;
 
@@ -6,18 +6,18 @@ use maud::{Markup, html};
 
 use crate::emphasised;
 
-/// A picture with title and caption, under a heading that may repeat the title; the title is then visible only
-/// where the figure is enlarged. It is an image, not a part of the page, so that names in it are its own. What it shows
-/// is in the caption; it is not read out twice. Light or dark it must be by itself, as the reader prefers.
+/// A picture with title and caption, under a heading that may repeat the title; the title is then visible only in the
+/// enlarged figure. The picture is an image and not part of the page, so that its ids cannot clash. The caption
+/// describes it, so it has no alternative text. It must adapt to the reader's light or dark mode by itself.
 #[derive(Debug, Clone, Copy)]
 pub struct Card<'a> {
     /// The card's address within the page is `figure-<id>`.
     pub id: &'a str,
     /// "Figure 8: …", or a title without a number.
     pub title: &'a str,
-    /// As [`emphasised`](crate::emphasised) takes it.
+    /// The caption, in the format of [`emphasised`](crate::emphasised).
     pub caption: &'a str,
-    /// A paragraph of its own below the caption: its heading and its text.
+    /// A separate paragraph below the caption: its heading and its text.
     pub remark: Option<(&'a str, &'a str)>,
     /// The picture.
     pub svg: &'a str,
@@ -41,7 +41,7 @@ impl Card<'_> {
     }
 }
 
-/// Where a figure is shown as large as the window allows.
+/// A dialog that shows a figure as large as the window allows.
 pub(crate) fn enlarged() -> Markup {
     html! {
         dialog #enlarged {
@@ -52,13 +52,13 @@ pub(crate) fn enlarged() -> Markup {
     }
 }
 
-/// The title of a figure up to the colon: "Figure 8". What has no number is called a picture.
+/// The title of a figure up to the colon: "Figure 8". A figure without a number is called a picture.
 pub fn name(title: &str) -> &str {
     title.split_once(':').map_or("picture", |(name, _)| name)
 }
 
-/// The picture as an address that holds it, hardly longer than the picture: browsers take spaces in such an address, and
-/// the quotes of attributes may be single ones, which need no writing around.
+/// The picture as a data URI that is hardly longer than the picture. Browsers accept spaces in such an address, and
+/// single quotes around attributes need no escaping.
 fn data_uri(svg: &str) -> String {
     let mut uri = String::with_capacity(svg.len() * 5 / 4) + "data:image/svg+xml,";
     for part in svg.split_inclusive('>') {
@@ -74,7 +74,7 @@ fn data_uri(svg: &str) -> String {
 fn add(piece: &str, uri: &mut String) {
     for byte in piece.bytes() {
         match byte {
-            // What ends an address or an attribute, or may not stand in one.
+            // Bytes that end an address or an attribute, or are not allowed in one.
             b'"' | b'#' | b'%' | b'&' | b'<' | 0..b' ' | 127.. => {
                 let _ = write!(uri, "%{byte:02X}");
             }
@@ -83,7 +83,7 @@ fn add(piece: &str, uri: &mut String) {
     }
 }
 
-/// Width and height of the drawing, pixels, so that the page does not jump when it appears.
+/// Width and height of the drawing, pixels; with them the page layout does not shift when it appears.
 fn size(svg: &str) -> (Option<&str>, Option<&str>) {
     let root = svg.split_once("<svg").and_then(|(_, rest)| rest.split_once('>')).map_or("", |(root, _)| root);
     let attribute = |name: &str| {

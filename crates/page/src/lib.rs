@@ -1,12 +1,12 @@
-//! How a report looks: one page of HTML that needs nothing else, and tables in Markdown.
+//! Presentation of a report: one self-contained HTML page, and tables in Markdown.
 //!
-//! - [`Document`]: the page, with contents, style and script in it. [`Part`]: what can be gone to.
-//! - [`Card`]: a figure that can be enlarged. It is given as SVG.
+//! - [`Document`]: the page, with contents, style and script. [`Part`]: a part with an address.
+//! - [`Card`]: a figure that can be enlarged, given as SVG.
 //! - [`Strip`] on a [`Scale`]: every value of a cell as a dot, so that outliers are visible. [`axis`], [`key`] explain them.
 //! - [`emphasised`]: sentences with emphasis, code and powers.
 //! - [`markdown_table`]: a table in Markdown.
 //!
-//! The contents are up to the caller. Bodies are [`maud::Markup`], which escapes what is put into it.
+//! The caller provides the contents. Bodies are [`maud::Markup`], which escapes inserted text.
 //!
 //! ```
 //! use maud::html;
@@ -35,7 +35,7 @@ pub use markdown::markdown_table;
 pub use scale::{Reference, Scale};
 pub use strip::{Strip, axis, key};
 
-/// The program of the README, compiled.
+/// Compiles the README's program.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;

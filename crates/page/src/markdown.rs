@@ -1,10 +1,10 @@
 //! Markdown tables.
 
-/// A table with a header line; every row must have as many cells. Cells are not padded.
+/// A table with a header line; every row must have the same number of cells. Cells are not padded.
 ///
 /// # Panics
 ///
-/// Where a row has another number of cells than the header.
+/// If a row and the header have different numbers of cells.
 pub fn markdown_table(header: &[&str], rows: &[Vec<String>]) -> String {
     let rule = vec!["---"; header.len()];
     let mut table = line(header) + &line(&rule);

@@ -1,21 +1,21 @@
-//! The scale that the strips of one measure share.
+//! The common scale of the strips of one measure.
 
-/// Largest over smallest value from which a scale is logarithmic.
+/// Ratio of largest to smallest value from which a scale is logarithmic.
 const WIDE: f64 = 30.0;
 
-/// Room beyond the outermost values, as a share of the scale.
+/// Margin beyond the outermost values, as a share of the scale.
 const MARGIN: f64 = 0.03;
 
-/// Ticks at most.
+/// Maximum number of ticks.
 const TICKS: f64 = 4.2;
 
-/// Letters that the labels of all ticks may have without touching.
+/// Maximum number of letters in the labels of all ticks, so that they do not touch.
 const LETTERS: usize = 22;
 
-/// Decades from which only whole ones are ticked.
+/// Number of decades from which only powers of ten get ticks.
 const MANY_DECADES: f64 = 1.7;
 
-/// What somebody else reports: a band of one standard deviation around a mean.
+/// A reported result for comparison: a band of one standard deviation around a mean.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Reference {
     /// The reported mean.
@@ -24,11 +24,11 @@ pub struct Reference {
     pub sd: f64,
 }
 
-/// Places values on a strip.
+/// Maps values to positions on a strip.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Scale {
     step: Step,
-    /// In logarithms where it is logarithmic.
+    /// Lower end of the scale; a logarithm on a logarithmic scale.
     from: f64,
     to: f64,
 }
@@ -40,7 +40,7 @@ enum Step {
 }
 
 impl Scale {
-    /// Holds all of these values and what they are compared with; logarithmic where the values are far apart. None may be
+    /// A scale that contains all these values and references; logarithmic if the values span a wide range. None may be
     /// negative.
     pub fn around(values: impl IntoIterator<Item = f64>, references: impl IntoIterator<Item = Reference>) -> Scale {
         let mut values: Vec<f64> = values.into_iter().collect();
@@ -62,7 +62,7 @@ impl Scale {
         Scale { step, from, to: to + margin }
     }
 
-    /// Where a value is, between 0 and 1; what lies beyond an end is put there.
+    /// Position of a value, between 0 and 1; values beyond an end are clamped.
     pub(crate) fn place(self, value: f64) -> f64 {
         let value = match self.step {
             Step::Linear => value,
@@ -72,7 +72,7 @@ impl Scale {
         ((value - self.from) / (self.to - self.from)).clamp(0.0, 1.0)
     }
 
-    /// Round values on it, as they are to be read.
+    /// Round values on the scale, with their labels.
     pub(crate) fn ticks(self) -> Vec<(f64, String)> {
         let ticks: Vec<_> = match self.step {
             Step::Linear => {
@@ -99,20 +99,20 @@ fn logarithmic(values: &[f64]) -> bool {
     least > 0.0 && most / least >= WIDE
 }
 
-/// The least and the largest; 0 where there is nothing.
+/// Smallest and largest value; 0 if there are none.
 fn range(values: &[f64]) -> (f64, f64) {
     let least = values.iter().copied().reduce(f64::min);
     let most = values.iter().copied().reduce(f64::max);
     (least.unwrap_or(0.0), most.unwrap_or(0.0))
 }
 
-/// 1, 2 or 5 times a power of ten, at least as large as this.
+/// 1, 2 or 5 times a power of ten, at least `least`.
 fn round_step(least: f64) -> f64 {
     let power = 10_f64.powf(least.log10().floor());
     [1.0, 2.0, 5.0].map(|m| m * power).into_iter().find(|&step| step >= least).unwrap_or(10.0 * power)
 }
 
-/// A tick with as many decimals as its step needs.
+/// Formats a tick with as many decimals as its step needs.
 fn short(value: f64, step: f64) -> String {
     let power = |value: f64| (value * 1.0001).log10().floor();
     let decimals = (-power(step)).max(0.0) as usize;

@@ -1,43 +1,44 @@
-//! A strip: every data set of a cell as a dot, over what it is compared with, so that outliers are visible.
+//! A strip: every data set of a cell as a dot, over the reference, so that outliers are visible.
 
 use maud::{Markup, html};
 
 use crate::{Reference, Scale};
 
-/// Pixels of the drawing.
+/// Dimensions of the drawing, pixels.
 const WIDTH: f64 = 190.0;
 const HEIGHT: f64 = 24.0;
 const AXIS_HEIGHT: f64 = 16.0;
 
-/// Pixels at either end, so that whole dots and labels are visible.
+/// Margin at either end, pixels, so that whole dots and labels are visible.
 const INSET: f64 = 8.0;
 
-/// Dots keep clear of the upper and lower edge by so many pixels.
+/// Distance between dots and the upper and lower edge, pixels.
 const EDGE: f64 = 4.0;
 
-/// Turn by which dots that follow each other are set apart: no two of them meet for long.
+/// Vertical step between successive dots, as a share of the height: the golden ratio keeps neighbours apart.
 const GOLDEN: f64 = 0.618_033_988_749_895;
 
 /// The values of a cell.
 pub struct Strip<'a> {
-    /// One for each data set that has one.
+    /// One value per data set; `None` if it has none.
     pub values: &'a [Option<f64>],
-    /// Of the values.
+    /// Mean of the values.
     pub mean: f64,
-    /// Of the values.
+    /// Median of the values.
     pub median: f64,
-    /// What they are compared with.
+    /// The result for comparison.
     pub reference: Option<Reference>,
-    /// How a value is written.
+    /// Formats a value.
     pub show: &'a dyn Fn(f64) -> String,
 }
 
 impl Strip<'_> {
-    /// The dots, over the band of what they are compared with.
+    /// Draws the dots over the band of the reference.
     pub fn drawn(&self, scale: Scale) -> Markup {
         let x = |value: f64| INSET + scale.place(value) * (WIDTH - 2.0 * INSET);
         let values = self.values.iter().enumerate().filter_map(|(i, value)| Some((i, (*value)?)));
-        // One path, of which every dot is a line without length and with round ends: a page has thousands of dots.
+        // All dots are one path, in which each is a line of length 0 with round ends, because a page has thousands of
+        // dots.
         let dots: Vec<String> = values.map(|(i, value)| format!("M{} {}h0", pixels(x(value)), pixels(y(i)))).collect();
         html! {
             svg .strip viewBox={ "0 0 " (WIDTH) " " (HEIGHT) } width=(WIDTH) height=(HEIGHT) role="img" aria-label=(self.summary()) {
@@ -77,7 +78,7 @@ pub fn axis(scale: Scale) -> Markup {
     }
 }
 
-/// What the dots and lines are; `reference` names the band.
+/// The legend of dots and lines; `reference` names the band.
 pub fn key(reference: &str) -> Markup {
     let sample = |drawing: Markup| html! { svg width="22" height="16" aria-hidden="true" { (drawing) } };
     html! {
@@ -94,12 +95,12 @@ fn tick(class: &str, x: f64, from: f64) -> Markup {
     html! { path class=(class) d={ "M" (pixels(x)) " " (pixels(from)) "V" (HEIGHT) } {} }
 }
 
-/// How far down the dot of a data set is drawn.
+/// Vertical position of a data set's dot.
 fn y(data_set: usize) -> f64 {
     EDGE + (GOLDEN * (data_set + 1) as f64).fract() * (HEIGHT - 2.0 * EDGE)
 }
 
-/// A tenth of a pixel is enough.
+/// Rounds to a tenth of a pixel, which suffices.
 fn pixels(value: f64) -> String {
     let text = format!("{value:.1}");
     text.strip_suffix(".0").unwrap_or(&text).to_owned()

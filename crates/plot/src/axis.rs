@@ -1,22 +1,22 @@
-/// How values are spaced on an axis.
+/// The spacing of values on an axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Axis {
-    /// Equal differences are equally long.
+    /// Equal differences have equal lengths.
     Linear,
-    /// Equal ratios are equally long. The lower end of the range is a power of ten. Where `lowest` is less, the axis goes
-    /// on below it to the next tick, with decades ten times shorter, and is drawn broken there: what is far below has its
-    /// place without taking it from the rest.
+    /// Equal ratios have equal lengths. The lower end of the range is a power of ten. If `lowest` is less, the axis
+    /// continues below it to the next tick, drawn broken, with decades ten times shorter. Values far below are then
+    /// visible without taking space from the rest.
     Logarithmic {
-        /// Positive.
+        /// A positive value.
         lowest: f64,
     },
 }
 
-/// So many decades below the range are as long as one in it.
+/// A decade within the range is as long as this many below it.
 const SHORTER: f64 = 10.0;
 
 impl Axis {
-    /// Where a value of the axis is: decades above `from` on a logarithmic axis, the value itself on a linear one.
+    /// Position of a value on the axis: decades above `from` on a logarithmic axis, the value itself on a linear one.
     pub(crate) fn place(self, value: f64, from: f64) -> f64 {
         match self {
             Axis::Linear => value,
@@ -27,7 +27,7 @@ impl Axis {
         }
     }
 
-    /// The places of both ends.
+    /// The positions of both ends.
     pub(crate) fn places(self, [from, to]: [f64; 2]) -> [f64; 2] {
         let low = match self {
             Axis::Linear => from,
@@ -47,7 +47,8 @@ impl Axis {
     }
 }
 
-/// The value at a whole place of a logarithmic axis: plainly, or where that is long as a power of ten.
+/// The label of a value at an integer position of a logarithmic axis: a decimal number, or a power of ten if that would
+/// be long.
 pub(crate) fn tick(place: f64, from: f64) -> String {
     let decades = if place < 0.0 { place * SHORTER } else { place };
     let exponent = (from.log10() + decades).round() as i32;

@@ -1,5 +1,5 @@
-//! The scale of what is shown in colours: its name above it, without which the plotting crate leaves it, and its colours as
-//! light or dark as those that it is of.
+//! The scale of a field in colours: adds its name above it, for which the plotting crate leaves no place, and matches its
+//! colours to those of the field.
 
 use kuva::render::color::Color;
 use kuva::render::render::{Primitive, Scene, TextAnchor};
@@ -7,11 +7,12 @@ use kuva::render::render::{Primitive, Scene, TextAnchor};
 use crate::Sketch;
 use crate::drawing::elements::words;
 
-/// Pixels from the scale to its name's foot, and the name's size.
+/// Pixels from the scale to the baseline of its name, and the name's size.
 const GAP: f64 = 8.0;
 const SIZE: u32 = 14;
 
-/// Completes the scale of a scene that has one: bars without outline, then the last outline without filling.
+/// Completes the scale of a scene that has one. Its elements are bars without an outline, followed by an outline without a
+/// filling.
 pub(crate) fn complete(name: &str, scene: &mut Scene) {
     let elements = &mut scene.elements;
     let is_outline =

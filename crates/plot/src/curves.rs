@@ -18,58 +18,58 @@ use crate::{Axis, Panel, Sign, Sketch, Stroke};
 pub struct Curve {
     /// (x, mean, standard deviation).
     pub points: Vec<(f64, f64, f64)>,
-    /// Of the line through the means; the band has its colour.
+    /// Style of the line through the means; the band has the same colour.
     pub stroke: Stroke,
-    /// At each point, if at all.
+    /// Marks at the points, if any.
     pub sign: Option<Sign>,
-    /// Next to its last point, where that is on the axis.
+    /// Label next to its last point, if that is on the axis.
     pub name: String,
 }
 
-/// Quantities against a quantity: lines through the means, in bands. On a linear axis a band reaches one standard
-/// deviation up and down; on a logarithmic one it reaches that far up and, for the eye, as far down, and so never to 0.
+/// Curves of quantities: lines through the means, with bands. On a linear axis a band extends one standard deviation up
+/// and down. On a logarithmic one it extends that far up and visually as far down, and therefore never reaches 0.
 /// Curves that leave the range end at its edge.
 #[derive(Debug, Clone)]
 pub struct Curves {
-    /// Above it.
+    /// Title above the panel.
     pub title: String,
-    /// What is varied, with its unit.
+    /// Label of the varied quantity, with its unit.
     pub x_label: String,
-    /// What is measured, with its unit.
+    /// Label of the measured quantity, with its unit.
     pub y_label: String,
-    /// How x is spaced; a logarithmic axis is not broken, whatever its `lowest`.
+    /// Spacing of x; a logarithmic axis is not broken, whatever its `lowest`.
     pub x_axis: Axis,
-    /// How y is spaced.
+    /// Spacing of y.
     pub y_axis: Axis,
-    /// From and to.
+    /// Range.
     pub x: [f64; 2],
-    /// From and to.
+    /// Range.
     pub y: [f64; 2],
-    /// From tick to tick: in units of x, or in decades of a logarithmic axis.
+    /// Distance between ticks: in units of x, or in decades of a logarithmic axis.
     pub x_step: f64,
-    /// Later ones lie on top.
+    /// The curves; later ones are drawn on top.
     pub lines: Vec<Curve>,
-    /// Words among the curves.
+    /// Notes among the curves.
     pub notes: Vec<Note>,
-    /// Right of the axes, for the names of curves, pixels.
+    /// Width to the right of the axes for the names of curves, pixels.
     pub room: f64,
-    /// Pixels, with that room.
+    /// Size in pixels, including that width.
     pub size: (f64, f64),
 }
 
-/// Words centred above a point.
+/// A text centred above a point.
 #[derive(Debug, Clone)]
 pub struct Note {
     /// The point.
     pub at: (f64, f64),
-    /// The words.
+    /// The text.
     pub text: String,
 }
 
-/// How much a band hides of what is behind it.
+/// Opacity of a band.
 const BAND: f64 = 0.13;
 
-/// A band is drawn with so many steps from point to point, so that an edge of the range cuts it where it should.
+/// Number of steps of a band between two points, so that the edge of the range cuts it correctly.
 const STEPS: usize = 24;
 
 impl Panel for Curves {
@@ -108,16 +108,16 @@ impl Panel for Curves {
     }
 }
 
-/// Pixels from the axes to names.
+/// Distance between axes and names, pixels.
 const NAME_GAP: f64 = 14.0;
 
 impl Curves {
-    /// Where a value of y is.
+    /// Position of a value of y.
     fn place(&self, value: f64) -> f64 {
         self.y_axis.place(value, self.y[0])
     }
 
-    /// Where a value of x is.
+    /// Position of a value of x.
     fn across(&self, value: f64) -> f64 {
         self.x_axis.place(value, self.x[0])
     }
@@ -127,7 +127,7 @@ impl Curves {
         (low..=high).contains(&place)
     }
 
-    /// The band around a curve, as far as the axis goes.
+    /// The band around a curve, within the axis.
     fn band(&self, curve: &Curve) -> Plot {
         let [low, high] = self.y_axis.places(self.y);
         let edge = |end: usize| {
@@ -140,7 +140,7 @@ impl Curves {
         Plot::Band(band.with_color(curve.stroke.color).with_opacity(BAND))
     }
 
-    /// The line through the means, in pieces where it leaves the axis and comes back.
+    /// The line through the means, in pieces if it leaves the axis and returns.
     fn line(&self, curve: &Curve) -> Vec<Plot> {
         let points: Vec<_> = curve.points.iter().map(|&(x, mean, _)| (self.across(x), self.place(mean))).collect();
         let line = |piece: Vec<(f64, f64)>| {
@@ -161,12 +161,12 @@ impl Curves {
     }
 }
 
-/// Whole places of a logarithmic axis, written by [`tick`].
+/// Labels at integer positions of a logarithmic axis, written by [`tick`].
 fn plainly(from: f64) -> TickFormat {
     TickFormat::Custom(Arc::new(move |place| tick(place, from)))
 }
 
-/// The points, and others evenly between them.
+/// The points, with additional ones evenly between them.
 fn fine(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
     let between = |pair: &[(f64, f64)]| {
         let [a, b] = [pair[0], pair[1]];
@@ -179,7 +179,7 @@ fn along(a: (f64, f64), b: (f64, f64), share: f64) -> (f64, f64) {
     (a.0 + share * (b.0 - a.0), a.1 + share * (b.1 - a.1))
 }
 
-/// The pieces of a line that are between two heights.
+/// The pieces of a line between two heights.
 fn inside(points: &[(f64, f64)], [low, high]: [f64; 2]) -> Vec<Vec<(f64, f64)>> {
     let is_inside = |point: &(f64, f64)| (low..=high).contains(&point.1);
     let mut pieces: Vec<Vec<(f64, f64)>> = vec![];
@@ -204,7 +204,7 @@ fn inside(points: &[(f64, f64)], [low, high]: [f64; 2]) -> Vec<Vec<(f64, f64)>> 
     pieces
 }
 
-/// Two strokes across an axis: its scale changes below.
+/// Two strokes across an axis, because its scale changes below.
 fn broken((x, y): (f64, f64), scene: &mut Scene) {
     const HALF: (f64, f64) = (7.0, 3.0);
     for below in [6.0, 11.0] {
@@ -229,7 +229,7 @@ mod tests {
         Curves { title, x_label, y_label, x_axis, y_axis, x, y, x_step, lines, notes: vec![], room, size }
     }
 
-    /// Middles of all round marks.
+    /// Centres of all round marks.
     fn circles(scene: &Scene) -> Vec<(f64, f64)> {
         let circles = |element: &Primitive| match element {
             Primitive::CircleBatch { cx, cy, .. } => cx.iter().copied().zip(cy.iter().copied()).collect(),
@@ -238,7 +238,7 @@ mod tests {
         scene.elements.iter().flat_map(circles).collect()
     }
 
-    /// Left end and foot of the curve's name.
+    /// Left end and baseline of the curve's name.
     fn name(scene: &Scene) -> Option<(f64, f64)> {
         scene.elements.iter().find_map(|element| match element {
             Primitive::Text { x, y, content, .. } if content == "here" => Some((*x, *y)),
@@ -253,7 +253,7 @@ mod tests {
         let circles = circles(&scene);
         assert_eq!(circles.len(), 6);
         assert_eq!(circles[..3], circles[3..]);
-        // A decade each: equal steps to the right and up.
+        // One decade each: equal steps to the right and up.
         let [a, b, c] = circles[..3] else { unreachable!() };
         assert!((b.0 - a.0 - (c.0 - b.0)).abs() < 0.05 && b.0 > a.0 + 100.0, "{circles:?}");
         assert!((b.1 - a.1 - (c.1 - b.1)).abs() < 0.05 && b.1 < a.1 - 50.0, "{circles:?}");

@@ -1,11 +1,11 @@
-//! Shorter numbers in drawings: what a sum leaves behind the fourth decimal of a pixel is of no use.
+//! Shorter numbers in drawings: rounding errors beyond the fourth decimal of a pixel are removed.
 
 use std::fmt::Write as _;
 
-/// Decimals that are kept.
+/// Number of decimals that are kept.
 const KEPT: usize = 4;
 
-/// The drawing with rounded numbers in its attributes; words between elements stay as they are.
+/// The drawing with rounded numbers in its attributes; text between elements does not change.
 pub(crate) fn shortened(svg: &str) -> String {
     let mut short = String::with_capacity(svg.len());
     for part in svg.split_inclusive('>') {

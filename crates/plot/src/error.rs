@@ -1,39 +1,39 @@
 use thiserror::Error;
 
-/// Why a picture cannot be made.
+/// The reason why a picture cannot be made.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum PlotError {
-    /// A field has fewer than two places along an axis.
+    /// A field has fewer than two grid points along an axis.
     #[error("a field has {places} place(s) along {axis}; give two or more")]
     FieldPlaces {
         /// "x" or "y".
         axis: &'static str,
-        /// How many there are.
+        /// Number of grid points.
         places: usize,
     },
-    /// A field has not one row of values for each place along y.
+    /// The number of rows of a field differs from the number of grid points along y.
     #[error("a field has {found} row(s) of values for {expected} places along y; give one for each")]
     FieldRows {
-        /// How many there are.
+        /// Number of rows.
         found: usize,
-        /// How many places there are.
+        /// Number of grid points.
         expected: usize,
     },
-    /// A row of a field has not one value for each place along x.
+    /// The length of a row of a field differs from the number of grid points along x.
     #[error("row {row} of a field has {found} value(s) for {expected} places along x; give one for each")]
     FieldRow {
-        /// Which row, counted from 0.
+        /// Index of the row, from 0.
         row: usize,
-        /// How many values it has.
+        /// Number of values in the row.
         found: usize,
-        /// How many places there are.
+        /// Number of grid points.
         expected: usize,
     },
-    /// The plotting crate cannot turn it into pixels.
+    /// The plotting crate cannot convert it to pixels.
     #[error("a picture cannot be turned into pixels: {reason}; its SVG can be had all the same")]
     Pixels {
-        /// What the plotting crate says.
+        /// The plotting crate's message.
         reason: String,
     },
 }

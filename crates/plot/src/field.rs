@@ -2,7 +2,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::PlotError;
 
-/// A scalar field on a grid of two columns and two rows, or more.
+/// A scalar field on a grid of at least two columns and two rows.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "Record")]
 pub struct Field {
@@ -12,10 +12,10 @@ pub struct Field {
 }
 
 impl Field {
-    /// `values[row][column]` at (`x[column]`, `y[row]`); what is not finite is not drawn.
+    /// `values[row][column]` at (`x[column]`, `y[row]`); values that are not finite are not drawn.
     ///
     /// # Errors
-    /// [`PlotError::FieldPlaces`], [`PlotError::FieldRows`] and [`PlotError::FieldRow`] where these do not make a grid.
+    /// [`PlotError::FieldPlaces`], [`PlotError::FieldRows`] and [`PlotError::FieldRow`] if the lengths do not form a grid.
     pub fn new(x: Vec<f64>, y: Vec<f64>, values: Vec<Vec<f64>>) -> Result<Field, PlotError> {
         for (axis, places) in [("x", x.len()), ("y", y.len())] {
             if places < 2 {
@@ -30,23 +30,23 @@ impl Field {
         Ok(Field { x, y, values })
     }
 
-    /// Places of the columns.
+    /// x coordinates of the columns.
     pub fn x(&self) -> &[f64] {
         &self.x
     }
 
-    /// Places of the rows.
+    /// y coordinates of the rows.
     pub fn y(&self) -> &[f64] {
         &self.y
     }
 
-    /// One row for each y.
+    /// The values, one row for each y.
     pub fn values(&self) -> &[Vec<f64>] {
         &self.values
     }
 }
 
-/// As it is stored.
+/// The stored form.
 #[derive(Deserialize)]
 struct Record {
     x: Vec<f64>,

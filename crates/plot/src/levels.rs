@@ -1,4 +1,4 @@
-//! Lines of equal value at round values, and the values on them.
+//! Contours at round values, with labels.
 
 use kuva::plot::ContourPlot;
 use kuva::render::annotations::TextAnnotation;
@@ -10,25 +10,25 @@ use crate::Field;
 use crate::drawing::elements::rectangle;
 use crate::ticks::{decimals, ticks};
 
-/// Lines, about.
+/// Approximate number of contours.
 const LINES: f64 = 9.0;
 const LINE: &str = "#a8a8a8";
 
-/// Size of a value and how wide its letters are, pixels; no other words of a plane have this size.
+/// Font size of labels, and the width of a letter, pixels; no other text of a plane has this size.
 const SIZE: u32 = 10;
 const LETTER: f64 = 6.4;
 const INK: &str = "#5a5a5a";
 
-/// Pixels by which the plotting crate sets words above their point.
+/// Distance between text and the point below it in the plotting crate, pixels.
 const ABOVE: f64 = 6.0;
 
-/// Values are written so far apart, as a share of the panel.
+/// Minimum distance between labels, as a share of the panel.
 const APART: f64 = 0.05;
 
-/// Points of the line along which values are written.
+/// Number of points of the line along which labels are placed.
 const POINTS: usize = 400;
 
-/// A value written on its line.
+/// A label on its contour.
 #[derive(Debug, PartialEq)]
 pub(crate) struct Written {
     at: (f64, f64),
@@ -41,7 +41,7 @@ impl Written {
     }
 }
 
-/// The lines; nothing where all that is known is level.
+/// The contours; `None` if the field is constant where it is known.
 pub(crate) fn lines(field: &Field, known: &[Vec<bool>], label: String) -> Option<Plot> {
     let levels = levels(field, known);
     let contours = ContourPlot::new()
@@ -50,7 +50,7 @@ pub(crate) fn lines(field: &Field, known: &[Vec<bool>], label: String) -> Option
     (!levels.is_empty()).then(|| Plot::Contour(contours.with_line_color(LINE).with_line_width(0.9).with_legend(label)))
 }
 
-/// The values, along the straight line from the lowest known place to the highest, which meets every line.
+/// The labels, along the straight line from the lowest known grid point to the highest, which crosses every contour.
 pub(crate) fn written(field: &Field, known: &[Vec<bool>]) -> Vec<Written> {
     let levels = levels(field, known);
     let decimals = decimals(&levels);
@@ -70,7 +70,7 @@ pub(crate) fn written(field: &Field, known: &[Vec<bool>]) -> Vec<Written> {
     written
 }
 
-/// Puts values on their lines, which give way to them.
+/// Puts labels on their contours, which are interrupted there.
 pub(crate) fn put_on_lines(values: &[Written], scene: &mut Scene) {
     let mut drawn = Vec::with_capacity(scene.elements.len());
     for mut element in std::mem::take(&mut scene.elements) {
@@ -88,7 +88,7 @@ pub(crate) fn put_on_lines(values: &[Written], scene: &mut Scene) {
     scene.elements = drawn;
 }
 
-/// Round values between the least known one and the largest.
+/// Round values between the smallest and the largest known value.
 fn levels(field: &Field, known: &[Vec<bool>]) -> Vec<f64> {
     let value = |(row, column): (usize, usize)| field.values()[row][column];
     match (extreme(field, known, 1.0).map(value), extreme(field, known, -1.0).map(value)) {
@@ -97,7 +97,7 @@ fn levels(field: &Field, known: &[Vec<bool>]) -> Vec<f64> {
     }
 }
 
-/// Row and column of the known place that is least, or largest where `sign` is −1.
+/// Row and column of the known grid point with the smallest value, or the largest if `sign` is −1.
 fn extreme(field: &Field, known: &[Vec<bool>], sign: f64) -> Option<(usize, usize)> {
     let places = (0..field.y().len()).flat_map(|row| (0..field.x().len()).map(move |column| (row, column)));
     let value = |&(row, column): &(usize, usize)| field.values()[row][column];
@@ -107,7 +107,7 @@ fn extreme(field: &Field, known: &[Vec<bool>], sign: f64) -> Option<(usize, usiz
 }
 
 impl Field {
-    /// Place and value a share of the way from one place of the grid to another, (row, column).
+    /// Position and value at a share of the way from one grid point to another, (row, column).
     fn between(&self, from: (usize, usize), to: (usize, usize), share: f64) -> ((f64, f64), f64) {
         let (x, y, values) = (self.x(), self.y(), self.values());
         let along = |from: usize, to: usize| from as f64 + share * (to as f64 - from as f64);

@@ -1,13 +1,13 @@
 //! Pictures: rows of panels, written as SVG and PNG.
 //!
-//! - [`Plane`]: things in the plane, both axes alike.
-//! - [`Curves`]: quantities against a quantity, linear or logarithmic, with bands, and named at their ends.
+//! - [`Plane`]: things in the plane, with the same scale on both axes.
+//! - [`Curves`]: curves with bands, on linear or logarithmic axes, labelled at their ends.
 //! - [`Canvas`]: lines, arrows and words without axes.
 //! - [`Relief`]: a scalar field or dots in perspective.
-//! - `Space`: things in space, the nearer ones before the others; with the feature `space`.
+//! - `Space`: 3-D scenes with hidden surfaces; requires the feature `space`.
 //!
 //! Sizes of panels, widths of lines and radii of dots are in pixels; everything else is in the units of the data.
-//! Colours are written as in HTML, `#rrggbb`, as they are on white paper; in an SVG greys change for a reader who prefers dark
+//! Colours are in HTML notation, `#rrggbb`, for white paper. In an SVG, greys change for a reader who prefers dark
 //! pages. The same panels give the same bytes.
 //!
 //! ```
@@ -30,7 +30,7 @@
 //! # Ok::<(), plot::PlotError>(())
 //! ```
 //!
-//! The only place that knows the plotting crate.
+//! This crate is the only one that uses the plotting library.
 
 mod axis;
 mod colour_scale;
@@ -64,7 +64,7 @@ pub use sign::{Filling, Sign};
 #[cfg(feature = "space")]
 pub use space::{Camera, Frame, Item, Paint, Space};
 
-/// The program of the README, compiled.
+/// Compiles the README's program.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;

@@ -1,28 +1,28 @@
-//! Names at the ends of curves, none on another.
+//! Labels at the ends of curves, without overlaps.
 
 use kuva::render::color::Color;
 use kuva::render::render::{Scene, TextAnchor};
 
 use crate::drawing::elements::{line, words};
 
-/// A name and the end of its curve, pixels.
+/// A label, and the end of its curve, pixels.
 pub(crate) struct Name<'a> {
     pub(crate) text: &'a str,
-    /// As in HTML.
+    /// In HTML notation.
     pub(crate) color: &'static str,
     pub(crate) end: (f64, f64),
 }
 
-/// Size of names, pixels, and from one to the next.
+/// Font size of labels, and the distance between them, pixels.
 const SIZE: u32 = 13;
 const APART: f64 = 16.0;
 
-/// Pixels from the end of a curve to its leader, and from the leader to the name.
+/// Distance between the end of a curve and its leader, and between the leader and the label, pixels.
 const FROM: f64 = 6.0;
 const TO: f64 = 4.0;
 
-/// Writes names to the right of `left`, each as near to its curve as others let it, with a line from the curve in its
-/// colour. The words are in the colour of all words: not every colour of a line is dark enough for letters.
+/// Writes labels to the right of `left`, each as close to its curve as the others allow, with a leader from the curve
+/// in its colour. The text has the default colour, because not every line colour is dark enough for letters.
 pub(crate) fn draw(mut names: Vec<Name<'_>>, left: f64, scene: &mut Scene) {
     names.sort_by(|a, b| a.end.1.total_cmp(&b.end.1));
     let wanted: Vec<f64> = names.iter().map(|name| name.end.1).collect();
@@ -32,9 +32,11 @@ pub(crate) fn draw(mut names: Vec<Name<'_>>, left: f64, scene: &mut Scene) {
     }
 }
 
-/// The places nearest to those wanted, which rise, that are so far `apart`: least squares, by pooling neighbours.
+/// The positions closest to the wanted ones, which are ascending, with distances of at least `apart`: least squares, by
+/// pooling neighbours.
 fn spread(wanted: &[f64], apart: f64) -> Vec<f64> {
-    // Runs of places exactly `apart`: the mean of where their first would be, and how many.
+    // Runs of positions exactly `apart`: the mean of the first position that each member wants, and the number of
+    // members.
     let mut runs: Vec<(f64, usize)> = vec![];
     for &place in wanted {
         let mut run = (place, 1);

@@ -5,18 +5,18 @@ use crate::drawing::style_sheet::BACKDROP;
 
 /// One part of a picture.
 pub trait Panel {
-    /// Draws it on a sheet of its own.
+    /// Draws it on a separate sheet.
     fn sketch(&self) -> Sketch;
 }
 
-/// A panel as it is drawn: lines, areas and words, and pixels under some of them.
+/// A drawn panel: lines, areas and words, with pixels behind some of them.
 #[derive(Debug)]
 pub struct Sketch {
     pub(crate) scene: Scene,
     pub(crate) rasters: Vec<Raster>,
 }
 
-/// What marks the group of a scene that has pixels in it, before their number.
+/// The attribute of a group for pixels; their number follows.
 const MARK: &str = "data-raster=\"";
 
 impl Sketch {
@@ -24,7 +24,7 @@ impl Sketch {
         Sketch { scene, rasters: vec![] }
     }
 
-    /// Adds pixels over all that is drawn so far.
+    /// Adds pixels on top of everything drawn so far.
     #[cfg(feature = "space")]
     pub(crate) fn add_raster(&mut self, raster: Option<Raster>) {
         if let Some(raster) = raster {
@@ -34,7 +34,7 @@ impl Sketch {
         }
     }
 
-    /// The attribute of the group that has these pixels in it.
+    /// The attribute of the group that contains these pixels.
     pub(crate) fn mark(number: usize) -> String {
         format!("{MARK}{number}\"")
     }
@@ -44,7 +44,7 @@ impl Sketch {
         Primitive::GroupStart { transform: None, title: None, extra_attrs: Some(Sketch::mark(number)) }
     }
 
-    /// The beginning of a group of what is behind lines and words.
+    /// The beginning of a group behind lines and words.
     pub(crate) fn backdrop() -> Primitive {
         Primitive::GroupStart { transform: None, title: None, extra_attrs: Some(BACKDROP.to_owned()) }
     }

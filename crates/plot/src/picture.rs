@@ -7,10 +7,10 @@ use crate::drawing::style_sheet::with_style_sheet;
 use crate::drawing::{dashes, turned};
 use crate::{Panel, PlotError, Sketch, decimals};
 
-/// Pixels between panels.
+/// Distance between panels, pixels.
 const GAP: f64 = 10.0;
 
-/// A picture, ready to be written in either form. The same panels give the same bytes.
+/// A picture that can be written in either format. The same panels give the same bytes.
 #[derive(Debug)]
 pub struct Picture(Sketch);
 
@@ -36,8 +36,8 @@ impl Picture {
         Picture(sheet)
     }
 
-    /// As scalable vector graphics; bodies in space and fields in colours are pixels within. On white paper, or, where the
-    /// reader prefers it, on dark.
+    /// The picture as SVG; bodies in space and fields in colours are embedded pixels. The background is white, or dark if
+    /// the reader prefers that.
     pub fn svg(&self) -> String {
         let mut svg = with_style_sheet(&decimals::shortened(&SvgBackend::new().render_scene(&self.0.scene)));
         for (number, raster) in self.0.rasters.iter().enumerate() {
@@ -47,11 +47,11 @@ impl Picture {
         svg
     }
 
-    /// As a PNG file, two dots to a pixel of the SVG, of which an inch has 96.
+    /// The picture as a PNG file, with two dots per pixel of the SVG, at 96 pixels per inch.
     ///
     /// # Errors
     ///
-    /// [`PlotError::Pixels`], where it is too large for the plotting crate.
+    /// [`PlotError::Pixels`], if it is too large for the plotting crate.
     pub fn png(&self) -> Result<Vec<u8>, PlotError> {
         let Sketch { scene, rasters } = &self.0;
         let mut sheet = Scene::new(scene.width, scene.height);
@@ -65,7 +65,7 @@ impl Picture {
     }
 }
 
-/// An element as pixels need it.
+/// An element, prepared for pixels.
 fn dotted(element: &Primitive, rasters: &[Raster]) -> Vec<Primitive> {
     match (Sketch::number(element), element) {
         (Some(number), _) => std::iter::once(element.clone()).chain(rasters[number].areas()).collect(),
@@ -73,8 +73,8 @@ fn dotted(element: &Primitive, rasters: &[Raster]) -> Vec<Primitive> {
     }
 }
 
-/// Puts a panel on the sheet. Clipping areas get names of their own: the crate counts them over all pictures of the
-/// program, in the order they are drawn, and several pictures may be in one page.
+/// Puts a panel on the sheet. Clipping areas get new ids: the crate numbers them over all pictures of the program, in
+/// drawing order, and one page may contain several pictures.
 fn place(sheet: &mut Sketch, Sketch { scene, rasters }: Sketch, (x, y): (f64, f64), number: usize) {
     let names: Vec<String> = scene.defs.iter().filter_map(|def| name(def)).map(str::to_owned).collect();
     let own = |name: &str| names.iter().position(|other| other == name).map(|at| format!("panel-{number}-clip-{at}"));
@@ -98,7 +98,7 @@ fn place(sheet: &mut Sketch, Sketch { scene, rasters }: Sketch, (x, y): (f64, f6
     sheet.scene.add(Primitive::GroupEnd);
 }
 
-/// The name that a definition gives.
+/// The id of a definition.
 fn name(definition: &str) -> Option<&str> {
     definition.split_once("id=\"")?.1.split_once('"').map(|(name, _)| name)
 }

@@ -10,119 +10,120 @@ use crate::drawing::style::heights;
 use crate::levels::Written;
 use crate::{Field, Mark, Panel, Sketch, Stroke, colour_scale, levels};
 
-/// One thing drawn in the plane; later layers lie on top.
+/// A layer of the plane; later layers are drawn on top.
 #[derive(Debug, Clone)]
 pub enum Layer {
-    /// Lines of equal value.
+    /// Contours.
     Contours(Field),
-    /// Lines of round values, each with its value on it.
+    /// Contours at round values, with labels.
     Levels {
         /// Values on a grid.
         field: Field,
-        /// Which of them are meant, those without an entry are not: values are round between the least and the largest of these, and written among them.
+        /// Which values are known; those without an entry are not. The contours are at round values between the smallest and the largest
+        /// known value, and their labels are among the known values.
         known: Vec<Vec<bool>>,
-        /// Of the lines in the legend.
+        /// Name of the contours in the legend.
         label: String,
     },
-    /// A field in colours that go smoothly, light where it is high, with a scale of this name.
+    /// A field in smooth colours, lighter with height, with a colour scale of this name.
     Colors {
-        /// Values on an even grid.
+        /// Values on a uniform grid.
         field: Field,
-        /// What the values are.
+        /// Description of the values.
         name: String,
-        /// From the darkest colour to the lightest, the same where panels are compared; without one, those of the field.
+        /// Values of the darkest and the lightest colour, equal in panels for comparison; by default the range of the field.
         range: Option<[f64; 2]>,
     },
-    /// A filled polygon that is in one piece on every vertical line.
+    /// A filled polygon whose intersection with every vertical line is connected.
     Region {
         /// In order.
         corners: Vec<(f64, f64)>,
-        /// As in HTML.
+        /// In HTML notation.
         color: &'static str,
         /// From 0 to 1.
         opacity: f64,
     },
-    /// A line through points. A label puts it in the legend.
+    /// A line through points. A label adds it to the legend.
     Path {
-        /// From its start to its end.
+        /// From start to end.
         points: Vec<(f64, f64)>,
-        /// How it looks.
+        /// Its style.
         stroke: Stroke,
-        /// In the legend.
+        /// Name in the legend.
         label: Option<String>,
     },
     /// Crosses.
     Crosses {
-        /// Their middles.
+        /// Their centres.
         points: Vec<(f64, f64)>,
-        /// As in HTML.
+        /// In HTML notation.
         color: &'static str,
     },
-    /// Dots with this radius in pixels.
+    /// Dots.
     Dots {
-        /// Their middles.
+        /// Their centres.
         points: Vec<(f64, f64)>,
-        /// As in HTML.
+        /// In HTML notation.
         color: &'static str,
-        /// Pixels.
+        /// Radius in pixels.
         radius: f64,
     },
-    /// Marks of this size in pixels. A label puts them in the legend.
+    /// Marks. A label adds them to the legend.
     Marks {
-        /// Their middles.
+        /// Their centres.
         points: Vec<(f64, f64)>,
         /// Their shape.
         mark: Mark,
-        /// As in HTML.
+        /// In HTML notation.
         color: &'static str,
         /// Half their width, pixels.
         size: f64,
-        /// In the legend.
+        /// Name in the legend.
         label: Option<String>,
     },
-    /// Words centred just above a point, on top of all layers.
+    /// Text centred just above a point, on top of all layers.
     Words {
         /// The point.
         at: (f64, f64),
-        /// The words.
+        /// The text.
         text: String,
     },
-    /// Arrows (x, y, u, v), in data units, `scale` times as long as they are. A label puts them in the legend.
+    /// Arrows (x, y, u, v), in data units, with a scaled length. A label adds them to the legend.
     Arrows {
-        /// Foot and components.
+        /// Start and components.
         arrows: Vec<(f64, f64, f64, f64)>,
-        /// As in HTML.
+        /// In HTML notation.
         color: &'static str,
-        /// How many times as long as their components they are drawn.
+        /// Ratio of the drawn length to the length of the components.
         scale: f64,
-        /// Of the shaft, pixels.
+        /// Width of the shaft, pixels.
         width: f64,
-        /// In the legend.
+        /// Name in the legend.
         label: Option<String>,
     },
 }
 
-/// Things in the plane, one unit as long on either axis.
+/// Layers in the plane, with the same scale on both axes.
 #[derive(Debug, Clone)]
 pub struct Plane {
-    /// Above it.
+    /// Title above the panel.
     pub title: String,
-    /// With its unit.
+    /// Label of x, with its unit.
     pub x_label: String,
-    /// With its unit.
+    /// Label of y, with its unit.
     pub y_label: String,
-    /// From and to.
+    /// Range of x.
     pub x: [f64; 2],
-    /// From and to.
+    /// Range of y.
     pub y: [f64; 2],
-    /// Later ones lie on top.
+    /// The layers; later ones are drawn on top.
     pub layers: Vec<Layer>,
-    /// Pixels.
+    /// Size in pixels.
     pub size: (f64, f64),
 }
 
 impl Plane {
-    /// Width and height in pixels that suit a square of the plane.
+    /// Width and height in pixels that suit a square region.
     pub const SQUARE: (f64, f64) = (400.0, 420.0);
 
     /// The names of lines and arrows in the legend.
@@ -138,7 +139,7 @@ impl Plane {
         self.layers.iter().filter_map(name).collect()
     }
 
-    /// The values on lines of all layers.
+    /// The labels on contours of all layers.
     fn values(&self) -> Vec<Written> {
         let of = |layer: &Layer| match layer {
             Layer::Levels { field, known, .. } => levels::written(field, known),
@@ -210,8 +211,8 @@ fn plot(layer: &Layer) -> Option<Plot> {
     })
 }
 
-/// A stand-in for a field, as wide and with colours for the same numbers: its scale is drawn from it, its four squares give
-/// way to [`smooth::instead_of_squares`].
+/// A stand-in for a field, with the same extent and range of colours. Its colour scale is drawn; its four squares are replaced by
+/// [`smooth::instead_of_squares`].
 fn colors(field: &Field, range: Option<[f64; 2]>) -> Heatmap {
     let (x, y) = (field.x(), field.y());
     let [low, high] = range.unwrap_or_else(|| smooth::range(field.values().iter().flatten()));
@@ -228,13 +229,13 @@ fn words(layer: &Layer) -> Option<TextAnnotation> {
     Some(TextAnnotation::new(text, at.0, at.1).with_font_size(13))
 }
 
-/// The strip between the lower and the upper edges of a polygon.
+/// The area between the lower and the upper edges of a polygon.
 fn band(corners: &[(f64, f64)]) -> BandPlot {
     let mut x: Vec<f64> = corners.iter().map(|corner| corner.0).collect();
     x.sort_by(f64::total_cmp);
     x.dedup();
     let edges = || corners.iter().zip(corners.iter().cycle().skip(1));
-    // Where edges meet the vertical through x; a vertical edge meets it in both ends.
+    // Heights at which edges cross the vertical line at x; a vertical edge contributes both ends.
     let heights = |at: f64| {
         edges().filter(move |(a, b)| (a.0.min(b.0)..=a.0.max(b.0)).contains(&at)).flat_map(move |(a, b)| {
             let share = (at - a.0) / (b.0 - a.0);

@@ -6,39 +6,39 @@ use crate::drawing::sheet::titled;
 use crate::drawing::style::{heights, heights_of_dots};
 use crate::{Field, Panel, Sketch};
 
-/// Heights above the plane in perspective, x to the right and y away from the reader; light is high.
+/// Heights above the plane in perspective, with x to the right and y away from the viewer; lighter colours are higher.
 #[derive(Debug, Clone)]
 pub struct Relief {
-    /// Above it.
+    /// Title above the panel.
     pub title: String,
-    /// Names of the axes, with units.
+    /// Axis labels, with units.
     pub labels: [String; 3],
-    /// Lowest and highest corner of the box; colours are of its heights.
+    /// Lowest and highest corner of the box; colours refer to its range of heights.
     pub extent: [(f64, f64, f64); 2],
-    /// Heights on a grid; what is not finite is left out.
+    /// Heights on a grid; values that are not finite are left out.
     pub surface: Option<Field>,
     /// Points (x, y, z).
     pub dots: Vec<(f64, f64, f64)>,
-    /// Pixels.
+    /// Size in pixels.
     pub size: (f64, f64),
 }
 
 /// Radius of dots, pixels.
 const DOT: f64 = 2.0;
 
-/// Size of words along axes, pixels.
+/// Font size along axes, pixels.
 const WORDS: u32 = 12;
 
-/// Pixels beside and below the box, and above it.
+/// Margins beside and below the box, and above it, pixels.
 const ROOM: (f64, f64) = (24.0, 18.0);
 const TITLE: f64 = 36.0;
 
 impl Panel for Relief {
-    // The crate's axes are left-handed from this side: with x and y exchanged the picture is no mirror image.
+    // The plotting crate's axes are left-handed from this side; exchanging x and y avoids a mirror image.
     fn sketch(&self) -> Sketch {
         let [x_label, y_label, z_label] = self.labels.each_ref().map(String::as_str);
         let points = |points: &[(f64, f64, f64)]| points.iter().map(|&(x, y, z)| (y, x, z)).collect::<Vec<_>>();
-        // The crate fits its box to what is in it: corners without size hold it open.
+        // The plotting crate fits its box to the contents; corners of size zero fix its extent.
         let corners = Scatter3DPlot::new().with_data(points(&self.extent)).with_size(0.0);
         let corners = corners.with_x_label(y_label).with_y_label(x_label).with_z_label(z_label);
         let corners = corners.with_z_axis_right(false);
@@ -55,7 +55,7 @@ impl Panel for Relief {
         }
         let layout = titled(&plots, &self.title, self.size);
         let mut layout = layout.with_force_margins(ROOM.0, ROOM.0).with_force_margins_y(TITLE, ROOM.1);
-        // Heights are at the axis.
+        // The axis already shows the heights.
         layout.show_colorbar = false;
         let mut scene = render_multiple(plots, layout);
         scene.elements.iter_mut().for_each(upright);
@@ -63,7 +63,7 @@ impl Panel for Relief {
     }
 }
 
-/// Words along axes as in `Space`: level, and none bolder than the others.
+/// Text along axes as in `Space`: horizontal, and not bold.
 fn upright(element: &mut Primitive) {
     if let Primitive::Text { size, rotate: rotate @ Some(_), bold, .. } = element {
         (*size, *rotate, *bold) = (WORDS, None, false);
@@ -81,7 +81,7 @@ mod tests {
         let labels = ["x", "y", "z"].map(str::to_owned);
         let (title, surface, size) = (String::new(), None, (400.0, 400.0));
         let scene = Relief { title, labels, extent, surface, dots, size }.sketch().scene;
-        // The farthest is drawn first: find each by its radius and distance to the others.
+        // The farthest is drawn first, so points are identified by their positions.
         let circle = |element: &Primitive| match element {
             Primitive::Circle { cx, cy, r, .. } if *r > 0.0 => Some((*cx, -*cy)),
             _ => None,

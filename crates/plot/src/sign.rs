@@ -7,31 +7,31 @@ use kuva::render::render::{PathData, Primitive};
 
 use crate::Mark;
 
-/// What marks the points of a curve.
+/// The mark of a curve's points.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Sign {
     /// Its shape.
     pub mark: Mark,
-    /// What is inside.
+    /// Its filling.
     pub filling: Filling,
 }
 
-/// What is inside a mark.
+/// The filling of a mark.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Filling {
-    /// The colour of its edge.
+    /// Filled with the colour of its edge.
     Full,
-    /// White.
+    /// Filled with white.
     Hollow,
 }
 
 /// Half the width of a mark, pixels.
 const SIZE: f64 = 4.0;
-/// How much of a hollow mark is empty.
+/// Share of a hollow mark that is empty.
 const HOLLOW: f64 = 0.55;
 
 impl Sign {
-    /// Colours and sizes of the marks that lie on each other.
+    /// Colours and sizes of the superimposed marks.
     fn layers(self, color: &str) -> Vec<(&str, f64)> {
         match self.filling {
             Filling::Full => vec![(color, SIZE)],
@@ -39,7 +39,7 @@ impl Sign {
         }
     }
 
-    /// At points of a plot.
+    /// The marks at points of a plot.
     pub(crate) fn plots(self, points: &[(f64, f64)], color: &str) -> Vec<Plot> {
         let layer = |(color, size): (&str, f64)| {
             let marks = ScatterPlot::new().with_data(points.iter().copied()).with_color(color).with_size(size);
@@ -49,7 +49,7 @@ impl Sign {
     }
 }
 
-/// A mark at a place of a scene, pixels; as the plotting crate draws it at points of a plot.
+/// A mark at a position of a scene, pixels; the same shape as the plotting crate draws at points of a plot.
 pub(crate) fn shape(mark: Mark, (cx, cy): (f64, f64), color: &str, size: f64) -> Primitive {
     let corners: &[(f64, f64)] = match mark {
         Mark::Circle => {

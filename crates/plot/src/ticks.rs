@@ -1,6 +1,6 @@
 //! Round values.
 
-/// Round values from low to high, about so many, and at least two.
+/// Round values from low to high: approximately `about`, and at least two.
 pub(crate) fn ticks(low: f64, high: f64, about: f64) -> Vec<f64> {
     let power = 10_f64.powf(((high - low) / about).log10().floor());
     let every = |step: f64| {
@@ -13,7 +13,7 @@ pub(crate) fn ticks(low: f64, high: f64, about: f64) -> Vec<f64> {
     coarsest[not_finer..].iter().map(|&step| every(step)).find(enough).unwrap_or_else(|| vec![low, high])
 }
 
-/// Digits after the point that tell the ticks apart.
+/// Number of decimals that distinguishes the ticks.
 pub(crate) fn decimals(ticks: &[f64]) -> usize {
     let step = if let [a, b, ..] = ticks { b - a } else { 1.0 };
     (-(step.log10() + 1e-9).floor()).max(0.0) as usize

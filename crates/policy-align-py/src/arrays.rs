@@ -1,14 +1,14 @@
-//! Arrays of Python, copied once.
+//! Conversion of Python's arrays, with one copy.
 
 use nalgebra::DMatrix;
 use numpy::ndarray::Array2;
 use numpy::{PyArray2, PyReadonlyArray2, PyUntypedArrayMethods as _};
 use pyo3::prelude::*;
 
-/// An (N, n) array as the (n, N) matrix that it is. Another thread may write to the array while no thread holds the lock,
-/// so nothing is computed on it in place.
+/// An (N, n) array as an (n, N) matrix. Another thread may write to the array while the lock is released, so it is copied
+/// and nothing is computed in place.
 ///
-/// `as_slice` is content with Fortran's order, too, and would hand out the transpose.
+/// `as_slice` also accepts Fortran order, and would then return the transpose.
 pub(crate) fn matrix(array: &PyReadonlyArray2<'_, f64>) -> DMatrix<f64> {
     let (samples, dim) = (array.shape()[0], array.shape()[1]);
     let numbers = match array.as_slice() {

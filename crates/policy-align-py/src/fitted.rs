@@ -21,7 +21,7 @@ use crate::refusal::{Refusal, file_or};
 use crate::rolling::{self, Constraint};
 use crate::{model_document, pool};
 
-/// Deviations, where they are known, and whether each state is supported.
+/// Standard deviations, if known, and whether each state is supported.
 type Certain<'py> = (Option<Bound<'py, PyArray2<f64>>>, Bound<'py, PyArray1<bool>>);
 
 /// A learnt policy.
@@ -257,7 +257,7 @@ impl Fitted {
 }
 
 impl Fitted {
-    /// Options to prepare movements as those that were learnt from.
+    /// Options that prepare movements like the training data.
     fn prepared_alike(&self, preparing: Preparing) -> Result<PrepareOptions, Refusal> {
         let (scale, context) = (self.model.scale(), self.model.context_use());
         Ok(PrepareOptions { scale, context, ..preparing.options(&[])? })
@@ -274,7 +274,7 @@ impl Fitted {
         Ok(states)
     }
 
-    /// Support and standard deviations at states, (N, n).
+    /// Support and standard deviations at states (N, n).
     fn certainty(&self, py: Python<'_>, states: &PyReadonlyArray2<'_, f64>) -> PyResult<Certainty> {
         let states = self.states(states)?;
         let (mut support, mut deviations) = (Vec::with_capacity(states.ncols()), None);

@@ -1,13 +1,14 @@
-//! The program's texts name its flags, and those of the library Rust's types. In Python they name arguments.
+//! Translates texts for Python: the program's texts name its flags, the library's texts name Rust types, and Python
+//! needs the names of arguments.
 
 use serde_json::Value;
 
-/// Flags that are arguments here; those of other programs (`rosbags-convert --src`) stay as they are.
+/// Flags that are arguments in Python; flags of other programs (`rosbags-convert --src`) are left unchanged.
 const ARGUMENTS: &str = "as bandwidth constraint-column context decimal degrees dt episode filter folds ignore init-d integration \
                          jumps learner max-rows nan reading samples-are scale seed separator smooth sort split-gap state \
                          time time-unit topic trim-still trust units unwrap velocity wraps";
 
-/// Values that are words: `--nan drop` is `nan="drop"`.
+/// Flags whose values are words: `--nan drop` becomes `nan="drop"`.
 const WORDS: [(&str, &[&str]); 12] = [
     ("bandwidth", &["auto"]),
     ("context", &["auto", "none"]),
@@ -23,10 +24,10 @@ const WORDS: [(&str, &[&str]); 12] = [
     ("wraps", &["auto", "keep"]),
 ];
 
-/// Members of the library's documents that are sentences: of findings, decisions and episodes left out, and warnings.
+/// Members of the library's documents that contain sentences: of findings, decisions, left-out episodes and warnings.
 const SENTENCES: [&str; 5] = ["what", "value", "why", "next", "warnings"];
 
-/// What the library's types are called here.
+/// Python names for the library's types.
 const TYPES: [(&str, &str); 5] = [
     ("Bandwidth::Fixed", "bandwidth=NUMBER"),
     ("Trajectory::with_velocities", "velocities=[...]"),
@@ -35,7 +36,7 @@ const TYPES: [(&str, &str); 5] = [
     ("--learner auto", "AutoGp"),
 ];
 
-/// The same text with `--split-gap` as `split_gap=`, and `Bandwidth::Fixed(0.1)` as `bandwidth=0.1`.
+/// The text with `--split-gap` replaced by `split_gap=`, and `Bandwidth::Fixed(0.1)` by `bandwidth=0.1`.
 pub(crate) fn in_python(text: &str) -> String {
     let mut text = with_number(text);
     for (rust, python) in TYPES {
@@ -59,12 +60,12 @@ pub(crate) fn in_python(text: &str) -> String {
     out + rest
 }
 
-/// The same for what is wrong, where an argument is named, not given.
+/// As [`in_python`], for descriptions of faults, which name an argument without a value.
 pub(crate) fn named_in_python(text: &str) -> String {
     in_python(text).replace("= ", " ").replace("=: ", ": ")
 }
 
-/// The same for all sentences of a document, in place.
+/// Applies [`in_python`] to all sentences of a document, in place.
 pub(crate) fn document_in_python(document: &mut Value) {
     fn translate(member: &str, value: &mut Value) {
         match value {
@@ -85,7 +86,7 @@ fn argument(name: &str) -> String {
     }
 }
 
-/// Writes the value of a flag where it is one; gives back what follows it.
+/// Writes the value of a flag if there is one; returns the rest of the text.
 fn value<'a>(name: &str, after: &'a str, out: &mut String) -> &'a str {
     let Some(given) = after.strip_prefix(' ') else { return after };
     let words = WORDS.iter().find(|(flag, _)| *flag == name).map_or(&[][..], |(_, words)| words);
@@ -113,7 +114,7 @@ fn value<'a>(name: &str, after: &'a str, out: &mut String) -> &'a str {
     &given[plain.len()..]
 }
 
-/// σ² in the place of the type that holds it.
+/// Replaces the type that contains σ² by an argument with its value.
 fn with_number(text: &str) -> String {
     match text.split_once("Bandwidth::Fixed(").and_then(|(before, after)| Some((before, after.split_once(')')?))) {
         Some((before, (number, after))) => format!("{before}bandwidth={number}{after}"),

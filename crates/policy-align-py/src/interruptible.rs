@@ -8,11 +8,11 @@ use std::time::Duration;
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 
-/// How often signals are looked at.
+/// Interval between two checks for signals.
 const LOOK: Duration = Duration::from_millis(50);
 
-/// Computes something that may take long, without the interpreter's lock. Ctrl-C raises at once and sets the flag, upon
-/// which the work, whose result is no longer needed, should end.
+/// Runs slow work without the interpreter's lock. Ctrl-C raises an exception at once and sets the flag, which asks the
+/// work to end because its result is no longer needed.
 pub(crate) fn interruptible<T: Send + 'static>(
     py: Python<'_>,
     work: impl FnOnce(&AtomicBool) -> T + Send + 'static,
@@ -21,7 +21,7 @@ pub(crate) fn interruptible<T: Send + 'static>(
     let flag = Arc::clone(&cancelled);
     let (done, mut result) = channel();
     let work = move || {
-        // After an interrupt, the result is not needed.
+        // After an interrupt, the receiver no longer exists.
         let _ = done.send(catch_unwind(AssertUnwindSafe(|| work(&flag))));
     };
     thread::Builder::new().spawn(work)?;

@@ -1,4 +1,4 @@
-//! Files that are too large to be held together.
+//! Files that are too large to be held in memory together.
 
 use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
@@ -15,10 +15,10 @@ use crate::options::Learning;
 use crate::pool;
 use crate::refusal::Refusal;
 
-/// A file, or a piece of one: its path, whether movements carry its name, and which part of it, as JSON.
+/// A file or a piece of one: its path, whether movements are named after it, and the part of the file, as JSON.
 pub(crate) type Given = (PathBuf, bool, Option<String>);
 
-/// Of what a digest is made: its place, what it is, its bytes, and rows at most.
+/// The source of a digest: its index, the file or piece, its size in bytes, and its largest number of rows.
 pub(crate) type Further = (usize, Given, u64, usize);
 
 /// Which of these files, and which pieces of large ones, are read at once to learn like this, and the others. `at_once` and `reading` are the
@@ -46,7 +46,7 @@ pub(crate) fn divide(
     Ok((division.at_once.into_iter().map(given).collect(), division.further.into_iter().map(tuple).collect()))
 }
 
-/// The program's options of reading, as JSON.
+/// The program's options for reading, as JSON.
 pub(crate) fn reading_of(options: &str) -> Result<ReadOptions, Refusal> {
     serde_json::from_str(options).map_err(|error| {
         let text = error.to_string();
@@ -62,7 +62,7 @@ fn given(Piece { path, named_by_file, span }: Piece) -> Given {
     (path, named_by_file, span.map(|span| json!(span).to_string()))
 }
 
-/// What is given.
+/// Converts the given file or piece.
 pub(crate) fn piece((path, named_by_file, span): Given) -> Result<Piece, Refusal> {
     let span = span.map(|text| serde_json::from_str(&text)).transpose();
     Ok(Piece { path, named_by_file, span: span.map_err(|error| damaged(&error.to_string()))? })
@@ -88,7 +88,7 @@ pub(crate) fn digest<'py>(py: Python<'py>, further: Further, digester: &str) -> 
     Ok(PyBytes::new(py, &bytes?))
 }
 
-/// The digests of these pieces, from parts as they came from elsewhere; the digester is JSON.
+/// The digests of these pieces, from parts that were made elsewhere; the digester is JSON.
 pub(crate) fn digests((pieces, parts, digester): (Vec<Further>, Vec<Vec<u8>>, String)) -> Result<Vec<Digest>, Refusal> {
     if pieces.is_empty() {
         return Ok(Vec::new());
@@ -103,7 +103,7 @@ pub(crate) fn digests((pieces, parts, digester): (Vec<Further>, Vec<Vec<u8>>, St
 #[pyclass(frozen, module = "policy_align._native")]
 pub(crate) struct Unfinished {
     pieces: Vec<FurtherPiece>,
-    /// None once it is closed.
+    /// `None` after closing.
     kept: Mutex<Option<policy_align::Unfinished>>,
 }
 

@@ -1,8 +1,8 @@
-//! The native half of the Python package `policy_align`: what `python/policy_align/*.py` stand on.
+//! The native half of the Python package `policy_align`, on which `python/policy_align/*.py` is built.
 //!
-//! Python checks types and makes arrays C-ordered; here they are copied once, and computations run without the
-//! interpreter's lock, on their own memory. Rows are samples in Python and columns in Rust, so that a C-ordered (N, n)
-//! array is an (n, N) matrix as it lies.
+//! Python checks types and makes arrays C-ordered. Here they are copied once, and computations on the copies run
+//! without the interpreter's lock. Rows are samples in Python and columns in Rust, so that a C-ordered (N, n) array
+//! has the memory layout of an (n, N) matrix.
 
 mod arrays;
 mod fitted;

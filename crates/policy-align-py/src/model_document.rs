@@ -4,7 +4,7 @@ use serde_json::json;
 
 use crate::hints::document_in_python;
 
-/// Everything in a model but the policy itself, as JSON.
+/// Everything in a model except the policy itself, as JSON.
 pub(crate) fn about(model: &Model) -> String {
     let policy = model.policy();
     let mut document = json!({
@@ -19,7 +19,7 @@ pub(crate) fn about(model: &Model) -> String {
     document.to_string()
 }
 
-/// The name of the learner, as a model file has it.
+/// The name of the learner, as in a model file.
 pub(crate) fn learner(learnt: &Learnt) -> &'static str {
     match learnt {
         Learnt::Auto(_) => "auto",

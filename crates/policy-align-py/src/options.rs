@@ -1,4 +1,4 @@
-//! What the estimators' parameters mean to the library.
+//! Converts the estimators' parameters to the library's options.
 
 use align::Bandwidth;
 use policy_align::{Choice, ContextUse, FitOptions, PrepareOptions};
@@ -6,21 +6,21 @@ use pyo3::prelude::*;
 
 use crate::refusal::Refusal;
 
-/// A number, or a word in its place.
+/// A number, or a word in place of it.
 #[derive(Debug, FromPyObject)]
 pub(crate) enum NumberOrWord {
     Number(f64),
     Word(String),
 }
 
-/// Names, or a word in their place.
+/// Names, or a word in place of them.
 #[derive(Debug, FromPyObject)]
 pub(crate) enum NamesOrWord {
     Word(String),
     Names(Vec<String>),
 }
 
-/// How recordings are prepared: items of a dictionary.
+/// Options for preparing recordings: items of a dictionary.
 #[derive(Debug, FromPyObject)]
 #[pyo3(from_item_all)]
 pub(crate) struct Preparing {
@@ -32,7 +32,7 @@ pub(crate) struct Preparing {
     context: NamesOrWord,
 }
 
-/// How a policy is learnt: items of a dictionary.
+/// Options for learning: items of a dictionary.
 #[derive(Debug, FromPyObject)]
 #[pyo3(from_item_all)]
 pub(crate) struct Learning {
@@ -48,7 +48,7 @@ pub(crate) struct Learning {
 }
 
 impl Preparing {
-    /// `context`: what was named while reading.
+    /// `context`: the channels that were read as context.
     pub(crate) fn options(self, context: &[String]) -> Result<PrepareOptions, Refusal> {
         let context = match self.context {
             NamesOrWord::Names(names) => ContextUse::Named(names),
@@ -91,7 +91,7 @@ impl Learning {
     }
 }
 
-/// What a word chooses; `or` begins the list of what else could have been given.
+/// The choice for a word; `or` begins the list of alternatives in the error.
 fn chosen<C: Choice>(word: &str, name: &str, or: &str) -> Result<C, Refusal> {
     let hint = || format!("{or}{}", C::listed("\""));
     C::of(word).ok_or_else(|| Refusal::new(format!("'{word}' is none of the choices"), name, hint()))

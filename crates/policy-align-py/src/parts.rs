@@ -1,22 +1,23 @@
-//! Work on many states that Ctrl-C ends.
+//! Work on many states that Ctrl-C can end.
 
 use nalgebra::{DMatrix, DMatrixView};
 use pyo3::prelude::*;
 
 use crate::pool;
 
-/// States between two looks at signals: less than a second.
+/// Number of states between two checks for signals, which take less than a second.
 const TOGETHER: usize = 1024;
 
-/// Works on some states (columns) after others, on threads of our own, and gives `take` what it finds with the first of these
-/// states. Ctrl-C is heard in between. One state is not worth the way to other threads.
+/// Applies `work` to groups of states (columns), one after the other, on our own threads, and passes each result to `take`
+/// with the index of the group's first state. Signals are checked in between. A single state is not worth a switch to other
+/// threads.
 pub(crate) fn in_parts<T: Send>(
     py: Python<'_>,
     states: &DMatrix<f64>,
     work: impl Fn(DMatrixView<'_, f64>) -> T + Sync,
     mut take: impl FnMut(usize, T),
 ) -> PyResult<()> {
-    // At least once, so that nothing found of no state has its form.
+    // Runs at least once, so that the result for no states also has the right shape.
     for first in (0..states.ncols().max(1)).step_by(TOGETHER) {
         let some = states.columns(first, TOGETHER.min(states.ncols() - first));
         let found =

@@ -1,5 +1,5 @@
-//! Threads of our own, instead of rayon's global ones: a number of them can be asked for, and a forked process, to which
-//! no thread follows, gets new ones instead of waiting for ever.
+//! Our own threads instead of rayon's global ones: their number can be chosen, and a forked process, which inherits no
+//! threads, gets new ones instead of waiting for ever.
 
 use std::collections::HashMap;
 use std::process;
@@ -9,13 +9,13 @@ use pyo3::PyResult;
 use pyo3::exceptions::PyRuntimeError;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
-/// By process and number of threads.
+/// Thread pools by process and number of threads.
 type Pools = HashMap<(u32, usize), Arc<ThreadPool>>;
 
-/// Those of a process before a fork stay: no thread is left to end them.
+/// Pools of the process before a fork are kept, because none of their threads is left to end them.
 static POOLS: LazyLock<Mutex<Pools>> = LazyLock::new(Mutex::default);
 
-/// Runs something on so many threads, 0: as many as rayon thinks right. Results do not depend on it.
+/// Runs work on this number of threads; 0 means rayon's default. Results do not depend on it.
 pub(crate) fn on<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> PyResult<T> {
     let mut pools = POOLS.lock().unwrap_or_else(PoisonError::into_inner);
     let key = (process::id(), threads);

@@ -25,17 +25,17 @@ pub(crate) struct Recordings {
     pub(crate) inner: Arc<Recorded>,
 }
 
-/// What an estimator needs of them.
+/// The recordings of an estimator, with their origin.
 pub(crate) struct Recorded {
     pub(crate) recordings: motion::Recordings,
     pub(crate) files: Vec<FileSummary>,
-    /// For messages: the file, or the argument.
+    /// The file or the argument, for messages.
     pub(crate) place: String,
     /// Channels that were read as context.
     pub(crate) context: Vec<String>,
 }
 
-/// Of a movement: times (N), positions (N, n), velocities (N, n) or none.
+/// Samples of a movement: times (N), positions (N, n), velocities (N, n) or none.
 type Samples<'py> = (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray2<f64>>, Option<Bound<'py, PyArray2<f64>>>);
 
 #[pymethods]
@@ -207,7 +207,7 @@ pub(crate) fn names_of(recordings: &motion::Recordings) -> Vec<String> {
     recordings.episodes.iter().map(|episode| episode.name.clone()).collect()
 }
 
-/// What readers of files check before they hand out recordings.
+/// The checks that readers of files apply to recordings.
 fn check(recordings: &motion::Recordings, dt: Option<f64>) -> Result<(), PrepareError> {
     let dim = recordings.state.len();
     for (k, episode) in recordings.episodes.iter().enumerate() {
@@ -228,7 +228,7 @@ fn movement(episode: &Episode, dt: Option<f64>) -> Result<Trajectory, MotionErro
     let positions = episode.positions.clone();
     match dt {
         Some(dt) => Trajectory::new(positions, dt),
-        // The stamps' own check says more than that of their first difference.
+        // The check of the stamps has a more precise error than that of their first difference.
         None => Trajectory::stamped(episode.times.stamps().into_owned(), positions),
     }
 }

@@ -1,4 +1,5 @@
-//! Errors of the Rust crates as `PolicyAlignError`: the program's three lines, what next in Python's words.
+//! Converts errors of the Rust crates to `PolicyAlignError`: the program's three lines, with the remedy in
+//! Python's terms.
 
 use std::path::Path;
 
@@ -15,7 +16,7 @@ mod python {
     pyo3::import_exception!(policy_align._errors, PolicyAlignError);
 }
 
-/// What is wrong, where, what next, and the numbers of it.
+/// The fault, its place, a hint, and its numbers.
 #[derive(Debug, Default)]
 pub(crate) struct Refusal {
     what: String,
@@ -32,13 +33,13 @@ impl Refusal {
         Refusal { what: what.into(), place: Some(place.into()), hint: Some(hint.into()), ..Refusal::default() }
     }
 
-    /// Of a message that says what next after its last semicolon.
+    /// Splits a message at its last semicolon into fault and hint.
     fn of_text(text: &str, place: &str, otherwise: &str) -> Self {
         let (what, hint) = text.rsplit_once("; ").unwrap_or((text, otherwise));
         Refusal::new(what, place, hint)
     }
 
-    /// A number that is not finite.
+    /// The error for a non-finite number.
     pub(crate) fn not_finite(sample: usize, column: usize, name: &str, place: &str) -> Self {
         let what = format!("sample {sample} is not finite in channel '{name}'");
         let found = Refusal::new(what, place, "give finite numbers");
@@ -50,7 +51,7 @@ impl Refusal {
         Refusal { code: Some(error.code()), ..Refusal::new(&fault.what, &fault.place, &fault.remedy) }
     }
 
-    /// `episodes`: their names, to find the number of the one at fault.
+    /// `episodes`: the names of all episodes, to find the index of the faulty one.
     pub(crate) fn prepare(error: &PrepareError, place: &str, episodes: &[String]) -> Self {
         let otherwise = match error {
             PrepareError::Scale { name, .. } => format!("scale={{'{name}': 10.0}}"),
@@ -137,7 +138,7 @@ impl From<Refusal> for PyErr {
     }
 }
 
-/// What the system refuses is an `OSError`, as everywhere in Python.
+/// System errors become `OSError`, as usual in Python.
 pub(crate) fn file_or(error: ModelError, path: &Path) -> PyErr {
     match error {
         ModelError::File(error) => match error.raw_os_error() {

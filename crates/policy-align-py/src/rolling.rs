@@ -1,4 +1,4 @@
-//! Roll-outs, under constraints that may be functions of Python.
+//! Roll-outs, under constraints that may be Python functions.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -10,14 +10,14 @@ use pyo3::prelude::*;
 use crate::arrays::{array, matrix};
 use crate::refusal::Refusal;
 
-/// What a roll-out must not move along.
+/// The constraint of a roll-out.
 #[derive(FromPyObject)]
 pub(crate) enum Constraint<'py> {
     /// Rows of A u = 0, (k, n).
     Rows(PyReadonlyArray2<'py, f64>),
     /// A file of constraints.
     File(std::path::PathBuf),
-    /// A(x, t), (k, n), as a function; None if there is none.
+    /// A(x, t), (k, n), as a function; `None` without a constraint.
     Function(Option<Py<PyAny>>),
 }
 
@@ -65,7 +65,7 @@ impl Path {
     }
 }
 
-/// What a function of Python raised.
+/// The exception raised by a Python function.
 type Raised = Arc<Mutex<Option<PyErr>>>;
 
 pub(crate) fn follow(
@@ -101,7 +101,7 @@ pub(crate) fn follow(
     Ok(Path { path: path.map_err(|error| Refusal::roll_out(&error))? })
 }
 
-/// Python is asked, with its lock, at every stage of every step.
+/// Calls the Python function, with the lock, at every stage of every step.
 fn of_function(function: Py<PyAny>, raised: Raised) -> ConstraintSet {
     let rows = move |state: DVectorView<'_, f64>, time: f64| -> Result<DMatrix<f64>, String> {
         let ask = |py: Python<'_>| -> PyResult<DMatrix<f64>> {

@@ -34,7 +34,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         println!("at {:.2?}: action {:.3?} ± {:.0e}", start.as_slice(), action.as_slice(), deviation.amax());
     }
 
-    // The sum of all coordinates stays as it is.
+    // The sum of all coordinates stays constant.
     let constraints = ConstraintSet::normal(DMatrix::from_element(1, policy.dim(), 1.0), policy.dim())?;
     let path = RollOut { constraints, ..RollOut::default() }.follow(&model, &start)?;
     let end = path.states.column(path.states.ncols() - 1);

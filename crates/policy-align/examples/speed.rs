@@ -1,5 +1,5 @@
-//! How long learning and asking take in Rust alone: `speed FILE.csv`, for `policy-align-py/benches/speed.py`, which asks
-//! the same of Python. Prints the least of several runs in seconds: fit, and 10⁵ actions.
+//! Measures learning and prediction in Rust alone: `speed FILE.csv`, for `policy-align-py/benches/speed.py`, which
+//! measures the same in Python. Prints the shortest of several runs in seconds: fit, and 10⁵ actions.
 
 #![allow(clippy::print_stdout, reason = "a program")]
 
@@ -40,7 +40,7 @@ fn learnt(recordings: &Recordings, options: &FitOptions) -> Result<Model, Box<dy
     Ok(fit(&prepared, options, &mut progress)?)
 }
 
-/// 10⁵ actions in one loop.
+/// Predicts 10⁵ actions in one loop.
 fn asked(model: &Model) {
     let n = model.state.len();
     let states = DMatrix::from_fn(n, 100_000, |row, column| ((row + 1) as f64 * 0.7 * column as f64).sin());

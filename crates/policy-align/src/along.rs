@@ -1,24 +1,24 @@
-//! What a policy says of movements along their own directions: all that constraints leave of it.
+//! A policy's component along the direction of each movement: the only component that constraints leave unchanged.
 
 use gp::Rows;
 use motion::{Policy, SampleIndex};
 use nalgebra::{DVector, Matrix2, Vector2};
 
-/// A sample that moves, u = r n, beside a policy there.
+/// A moving sample, u = r n, and the policy's component along it.
 pub(crate) struct Along {
-    /// Its movement.
+    /// Index of its movement.
     pub(crate) trajectory: usize,
-    /// Its place there.
+    /// Its index in the movement.
     pub(crate) sample: usize,
-    /// n, (n).
+    /// The direction n, (n).
     pub(crate) direction: DVector<f64>,
-    /// r.
+    /// The speed r.
     pub(crate) speed: f64,
-    /// nᵀπ̂, where the policy may also be one of a context.
+    /// nᵀπ̂; the policy may depend on the context.
     pub(crate) wanted: f64,
 }
 
-/// [`along`], by movement.
+/// The samples of [`along`], by movement.
 pub(crate) fn along_movements(policy: &dyn Policy, rows: &Rows) -> Vec<Vec<Along>> {
     let count = rows.indices().iter().map(|index| index.trajectory + 1).max().unwrap_or(0);
     let mut movements: Vec<Vec<Along>> = std::iter::repeat_with(Vec::new).take(count).collect();
@@ -26,23 +26,23 @@ pub(crate) fn along_movements(policy: &dyn Policy, rows: &Rows) -> Vec<Vec<Along
     movements
 }
 
-/// Fewer movements determine no t.
+/// The least number of movements that determines a t.
 pub(crate) const FEW: usize = 5;
-/// A t over movements above which an effect is real.
+/// The t over movements above which an effect is real.
 pub(crate) const LEAST_T: f64 = 4.0;
 
 /// The first coefficient of a regression of r − nᵀπ̂ on two factors.
 pub(crate) struct Regression {
     /// The coefficient.
     pub(crate) coefficient: f64,
-    /// The same over its standard error, with movements as units.
+    /// The coefficient divided by its standard error; the movements are the units.
     pub(crate) t: f64,
-    /// Share of Σ(r − nᵀπ̂)² that it explains beside the second factor.
+    /// Share of Σ(r − nᵀπ̂)² that it explains in addition to the second factor.
     pub(crate) share: f64,
 }
 
 impl Regression {
-    /// Least squares over all samples; none of too few movements, or where the factors depend on each other.
+    /// Least squares over all samples. `None` if there are too few movements or the factors are linearly dependent.
     pub(crate) fn of(movements: &[Vec<Along>], factors: impl Fn(&Along) -> Vector2<f64>) -> Option<Self> {
         let parts = |sample: &Along| (factors(sample), sample.speed - sample.wanted);
         let (mut matrix, mut vector, mut squares) = (Matrix2::zeros(), Vector2::zeros(), 0.0);
@@ -64,10 +64,10 @@ impl Regression {
     }
 }
 
-/// So many states are asked for together.
+/// Number of states in one call of the policy.
 const BLOCK: usize = 4096;
 
-/// Every row that moves.
+/// All moving rows.
 pub(crate) fn along<'a>(policy: &'a dyn Policy, rows: &'a Rows) -> impl Iterator<Item = Along> + 'a {
     (0..rows.len()).step_by(BLOCK).flat_map(move |first| {
         let count = BLOCK.min(rows.len() - first);

@@ -4,25 +4,25 @@ use prepare::StateChannel;
 
 use crate::{Finding, Verdict};
 
-/// Configurations that are placed at once; their links fit into the processor's cache.
+/// Configurations in one batch; their link poses fit into the processor's cache.
 const AT_ONCE: usize = 64;
 
-/// Turns beyond which numbers of joints are hardly radians.
+/// Turns above which a joint's numbers are hardly radians.
 const TURNS: f64 = 2.0;
 
-/// The joints of a robot that the channels of a state are.
+/// The joints of a robot that correspond to the channels of a state.
 #[derive(Debug, Clone)]
 pub(crate) struct ChannelJoints {
     n_joints: usize,
-    /// For each channel, its joint's place in a configuration.
+    /// For each channel, the index of its joint in a configuration.
     pub(crate) places: Vec<usize>,
 }
 
 impl ChannelJoints {
-    /// By name, with or without a unit in brackets.
+    /// Finds joints by name, with or without a unit in brackets.
     ///
     /// # Errors
-    /// In a sentence: which channel is not a joint.
+    /// A sentence that names the channel that is not a joint.
     pub(crate) fn of<'a>(robot: &RobotModel, channels: impl Iterator<Item = &'a str>) -> Result<Self, String> {
         let place = |channel: &'a str| {
             joint_of(robot, channel).ok_or_else(|| {
@@ -43,7 +43,7 @@ impl ChannelJoints {
         self.n_joints
     }
 
-    /// The configuration in a state (n) in radians and metres; joints that are no channels are at 0.
+    /// The configuration of a state (n), in radians and metres; joints without a channel are at 0.
     pub(crate) fn configuration(&self, state: DVectorView<'_, f64>) -> DVector<f64> {
         let mut q = DVector::zeros(self.n_joints);
         for (&place, &x) in self.places.iter().zip(state.iter()) {
@@ -52,7 +52,7 @@ impl ChannelJoints {
         q
     }
 
-    /// [`ChannelJoints::configuration`] of each of these states (n, N), and likewise of velocities.
+    /// [`ChannelJoints::configuration`] of each of these states (n, N); velocities are converted likewise.
     pub(crate) fn configurations(&self, states: DMatrixView<'_, f64>) -> DMatrix<f64> {
         let mut q = DMatrix::zeros(self.n_joints, states.ncols());
         for (&place, row) in self.places.iter().zip(states.row_iter()) {
@@ -61,10 +61,10 @@ impl ChannelJoints {
         q
     }
 
-    /// Hands over the configurations of these states (n, N) by groups that are placed at once, each with the number of its first state.
+    /// Passes the configurations of these states (n, N) to `each` in batches, each with the index of its first state.
     ///
     /// # Errors
-    /// What `each` answers, [`KinematicsError::InBatch`] with the number of the state among all.
+    /// Those of `each`; [`KinematicsError::InBatch`] then carries the index among all states.
     pub(crate) fn by_groups(
         &self,
         states: &DMatrix<f64>,
@@ -80,13 +80,13 @@ impl ChannelJoints {
     }
 }
 
-/// The place in a configuration of the joint that a channel is: `elbow` or `elbow [deg]`.
+/// Index in a configuration of the joint that a channel names: `elbow` or `elbow [deg]`.
 pub(crate) fn joint_of(robot: &RobotModel, channel: &str) -> Option<usize> {
     let bare = || channel.split(['[', '(']).next().unwrap_or(channel).trim_end();
     robot.joint(channel).or_else(|_| robot.joint(bare())).ok()
 }
 
-/// Names channels that are joints which turn, whose numbers would be many turns as radians, and have no unit.
+/// Lists revolute joints among the channels that have no unit and would move by many turns in radians.
 pub fn joints_in_degrees(robot: &RobotModel, state: &[StateChannel]) -> Option<Finding> {
     let turns = |channel: &&StateChannel| {
         let kind = joint_of(robot, &channel.name).map(|place| robot.joints()[place].kind());
@@ -100,19 +100,19 @@ pub fn joints_in_degrees(robot: &RobotModel, state: &[StateChannel]) -> Option<F
     })
 }
 
-/// What divides the numbers that are learnt from, of channels that are joints, into radians and metres, (n).
+/// Divisors (n) that convert the learner's numbers to radians and metres, for channels that are joints.
 pub(crate) fn scales_of_joints(state: &[StateChannel]) -> DVector<f64> {
     let scale = |channel: &StateChannel| channel.scale / unit(channel.unit.as_deref(), None);
     DVector::from_iterator(state.len(), state.iter().map(scale))
 }
 
-/// States (n, N) over factors (n).
+/// States (n, N) divided by factors (n).
 pub(crate) fn unscaled(states: &DMatrix<f64>, scales: &DVector<f64>) -> DMatrix<f64> {
     DMatrix::from_fn(states.nrows(), states.ncols(), |row, column| states[(row, column)] / scales[row])
 }
 
-/// Radians or metres in a unit of a channel that is a joint; its numbers as they are where nothing is known of it. Of no kind: whatever its
-/// unit says.
+/// Radians or metres per unit of a channel that is a joint; 1 if the unit is unknown. If the kind of the joint is unknown, the unit alone
+/// decides.
 pub(crate) fn unit(unit: Option<&str>, joint: Option<JointKind>) -> f64 {
     match (unit, joint) {
         (Some("mm"), None | Some(JointKind::Prismatic)) => 1e-3,
@@ -140,7 +140,7 @@ mod tests {
             median: 0.5,
         };
         let state = [("rad", 1.0), ("deg", 2.0), ("mm", 0.5), ("m", 4.0)].map(channel);
-        // What is learnt from is the recorded number times the scale.
+        // The learner's number is the recorded number times the scale.
         let learnt = dvector![1.5, 2.0 * 90.0, 0.5 * 250.0, 4.0 * 0.25];
         let converted = learnt.component_div(&scales_of_joints(&state));
         assert!((converted - dvector![1.5, std::f64::consts::FRAC_PI_2, 0.25, 0.25]).amax() < 1e-12);

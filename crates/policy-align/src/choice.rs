@@ -4,17 +4,17 @@ use prepare::{Repair, VelocityUse};
 
 use crate::LearnerChoice;
 
-/// A choice by its word, the same in the program's flags, in files of flags and in Python.
+/// An option that is chosen by a word, the same in the program's flags, in configuration files and in Python.
 pub trait Choice: Copy + 'static {
-    /// Every word, and what it chooses.
+    /// All words and their choices.
     const WORDS: &'static [(&'static str, Self)];
 
-    /// What a word chooses; none if it is no such word.
+    /// The choice for a word; `None` for an unknown word.
     fn of(word: &str) -> Option<Self> {
         Self::WORDS.iter().find(|(known, _)| *known == word).map(|(_, choice)| *choice)
     }
 
-    /// The words in a sentence, between quotes: "a", "b" or "c".
+    /// The words as a list in a sentence, in quotes: "a", "b" or "c".
     fn listed(quote: &str) -> String {
         let words: Vec<String> = Self::WORDS.iter().map(|(word, _)| format!("{quote}{word}{quote}")).collect();
         let (last, others) = words.split_last().expect("there is a choice");

@@ -1,20 +1,20 @@
-//! A model in one of its contexts.
+//! Fixes a model's context.
 
 use nalgebra::DVector;
 use thiserror::Error;
 
 use crate::{ContextUse, Model, StateChannel};
 
-/// Why a model cannot be put into a context.
+/// Reasons why a context cannot be fixed.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum ContextError {
     /// The model has no such channel.
     #[error("the model's context has no '{name}'; it has {}", listed(.known))]
     Unknown {
-        /// The name given.
+        /// The given name.
         name: String,
-        /// The names there are.
+        /// The names of the context's channels.
         known: Vec<String>,
     },
     /// A channel has no value.
@@ -38,8 +38,8 @@ fn listed(names: &[String]) -> String {
 }
 
 impl Model {
-    /// The same model in one context c, (p) in the order of [`Model::context`] and in the units of the recording: its policy is one
-    /// of the state alone, wherever a model is taken.
+    /// The model with a fixed context c, (p) in the order of [`Model::context`] and in the units of the recording. Its policy
+    /// depends on the state alone and can be used wherever a model can.
     ///
     /// # Errors
     /// [`ContextError`].
@@ -54,7 +54,7 @@ impl Model {
         }
     }
 
-    /// The same with the values by name.
+    /// As [`Model::in_context`], with the values by name.
     ///
     /// # Errors
     /// [`ContextError`].
@@ -68,7 +68,7 @@ impl Model {
         self.in_context(&DVector::from_vec(context.ok_or(ContextError::Missing { names: known })?))
     }
 
-    /// The same in the context that was chosen, or else in the one in the middle of those learnt from.
+    /// The model in its fixed context, or else in the median context of its demonstrations.
     #[must_use]
     pub fn in_usual_context(&self) -> Model {
         if self.open_context().is_empty() {
@@ -78,7 +78,7 @@ impl Model {
         Model { chosen_context: DVector::from_iterator(self.context.len(), middle), ..self.clone() }
     }
 
-    /// To prepare other recordings as those that were learnt from.
+    /// How to prepare other recordings like those from which the model was learnt.
     pub fn context_use(&self) -> ContextUse {
         ContextUse::of(&self.context)
     }
@@ -88,12 +88,12 @@ impl Model {
         self.context.iter().map(|channel| channel.name.clone()).collect()
     }
 
-    /// The channels of the context unless one was chosen: [`Model::policy`] takes their values after those of the state.
+    /// The channels of the context unless it is fixed: [`Model::policy`] takes their values after those of the state.
     pub fn open_context(&self) -> &[StateChannel] {
         if self.chosen_context.is_empty() { &self.context } else { &[] }
     }
 
-    /// The channels of all that the learner's policy takes: of the state, then of the context.
+    /// The channels of all inputs of the learner's policy: the state, then the context.
     pub(crate) fn inputs(&self) -> impl Iterator<Item = &StateChannel> {
         self.state.iter().chain(&self.context)
     }

@@ -2,7 +2,7 @@ use align::AlignError;
 use gp::GpError;
 use thiserror::Error;
 
-/// Why nothing was learnt.
+/// Reasons why a fit fails.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum FitError {
@@ -14,18 +14,18 @@ pub enum FitError {
     Option {
         /// Its flag.
         name: &'static str,
-        /// The value given.
+        /// The given value.
         value: f64,
-        /// What it must satisfy.
+        /// The condition that it must satisfy.
         requirement: &'static str,
     },
     /// A robot's mass matrix cannot be used.
     #[error("robot: {reason}")]
     Robot {
-        /// Why.
+        /// The reason.
         reason: String,
     },
-    /// The learner has no use for a context.
+    /// The learner does not support a context.
     #[error("PolicyAlign cannot learn what depends on a context ({context}); --learner auto, or --context none")]
     Context {
         /// Its channels.
@@ -34,13 +34,13 @@ pub enum FitError {
     /// Digests of further recordings cannot be used.
     #[error("further recordings: {reason}")]
     Digest {
-        /// Why.
+        /// The reason.
         reason: String,
     },
-    /// A Gaussian process refuses.
+    /// Error of a Gaussian process.
     #[error(transparent)]
     Gp(#[from] GpError),
-    /// PolicyAlign refuses.
+    /// Error of PolicyAlign.
     #[error(transparent)]
     Align(#[from] AlignError),
     /// Positions cannot be smoothed.

@@ -12,19 +12,19 @@ use crate::{FitError, Model, Prepared};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Evaluation {
-    /// Σ (uᵀπ̂/r − r)² / Σ r², r = ‖u‖: 0 explains every movement, 1 is as good as standing still.
+    /// Σ (uᵀπ̂/r − r)² / Σ r², r = ‖u‖: 0 means that every movement is predicted exactly, 1 is as good as standing still.
     pub slope_error: f64,
-    /// The same over Σ ‖π̂‖², which is meaningful where constraints block most of the policy.
+    /// The same sum of squares over Σ ‖π̂‖², which is meaningful even if constraints block most of the policy.
     pub policy_error: f64,
-    /// [`Evaluation::slope_error`] of each movement, (K); none where it does not move.
+    /// [`Evaluation::slope_error`] of each movement, (K); `None` if it does not move.
     pub episodes: Vec<Option<f64>>,
-    /// uᵀπ̂/r − r of every sample that moves, in order of movements and samples, (M' ≤ M); in units of the scaled state per second.
+    /// uᵀπ̂/r − r of every moving sample, ordered by movement and sample, (M' ≤ M); in units of the scaled state per second.
     pub residuals: Vec<f64>,
-    /// Share of samples within the data that the model was learnt from: [`ModelPolicy::is_supported`](crate::ModelPolicy::is_supported).
+    /// Share of samples within the model's data: [`ModelPolicy::is_supported`](crate::ModelPolicy::is_supported).
     pub supported: f64,
-    /// Error of the unconstrained policy; none without truth.
+    /// Error of the unconstrained policy; `None` without truth.
     pub nupe: Option<f64>,
-    /// Error of the constrained policy; none without truth.
+    /// Error of the constrained policy; `None` without truth.
     pub ncpe: Option<f64>,
 }
 
@@ -33,7 +33,7 @@ pub struct Evaluation {
 pub struct Truth {
     /// π at each sample, (n, M), times the channels' scales.
     pub actions: DMatrix<f64>,
-    /// Projectors N at each sample, each (n, n), (M); none if unknown.
+    /// Projectors N at each sample, each (n, n), (M); `None` if unknown.
     pub projectors: Option<Vec<DMatrix<f64>>>,
 }
 
@@ -112,35 +112,35 @@ fn against(
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum EvaluateError {
-    /// They are of different spaces.
+    /// Policy and movements have different dimensions.
     #[error("the policy has {policy} dimensions, the movements {movements}; use the channels it was learnt from")]
     Dimension {
-        /// Of the policy.
+        /// Dimension of the policy.
         policy: usize,
-        /// Of the movements.
+        /// Dimension of the movements.
         movements: usize,
     },
-    /// Not one projector a sample.
+    /// The number of projectors differs from the number of samples.
     #[error("there are {found} projectors for {expected} samples; give one for each")]
     Projectors {
-        /// How many there are.
+        /// Number of projectors.
         found: usize,
-        /// How many samples there are.
+        /// Number of samples.
         expected: usize,
     },
-    /// No constraint can be left out.
+    /// There are too few constraints to leave one out.
     #[error("the recordings name {found} constraint{}; --constraint-column with a column that names at least two", if *found == 1 { "" } else { "s" })]
     Constraints {
-        /// Labels.
+        /// Number of labels.
         found: usize,
     },
-    /// The robot refuses a state of the movements.
+    /// The robot cannot take a state of the movements.
     #[error("the robot cannot be where a movement is: {reason}")]
     Robot {
-        /// What it says.
+        /// The robot model's error.
         reason: String,
     },
-    /// The remaining movements cannot be learnt from.
+    /// Learning from the remaining movements fails.
     #[error(transparent)]
     Fit(#[from] FitError),
     /// The movements cannot be cleaned.

@@ -1,8 +1,8 @@
-//! States spread evenly, the same ones every time.
+//! Evenly spread states, the same at every call.
 
 use nalgebra::DVector;
 
-/// Number `index` (from 1) of an even covering of the space between bounds, by Halton's sequence.
+/// Point `index` (from 1) of Halton's sequence, which covers the space between bounds evenly.
 pub(crate) fn between(bounds: &[[f64; 2]], index: usize) -> DVector<f64> {
     DVector::from_fn(bounds.len(), |axis, _| {
         let [low, high] = bounds[axis];
@@ -10,7 +10,7 @@ pub(crate) fn between(bounds: &[[f64; 2]], index: usize) -> DVector<f64> {
     })
 }
 
-/// Digits of `index` mirrored at the point, to the prime base of dimension `axis`: in (0, 1).
+/// Digits of `index` mirrored at the radix point, in the prime base of dimension `axis`: in (0, 1).
 fn radical_inverse(index: usize, axis: usize) -> f64 {
     let base = (2..).filter(|n| (2..*n).take_while(|d| d * d <= *n).all(|d| n % d != 0)).nth(axis).unwrap_or(2);
     let (mut left, mut share, mut value) = (index, 1.0 / base as f64, 0.0);

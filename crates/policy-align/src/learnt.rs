@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Learnt {
-    /// Slope GP and direct GP, and the choice between them.
+    /// Slope GP and direct GP, with the choice between them.
     Auto(Box<AutoFit>),
     /// Aligned potentials and LWPR.
     PolicyAlign(Box<PotentialPolicy>),
@@ -18,7 +18,7 @@ pub enum Learnt {
 }
 
 impl Learnt {
-    /// The policy, in the units it was learnt in.
+    /// The policy, in the units in which it was learnt.
     pub fn policy(&self) -> &dyn LearntPolicy {
         match self {
             Learnt::Auto(policy) => policy.as_ref(),

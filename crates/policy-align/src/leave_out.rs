@@ -1,4 +1,4 @@
-//! Cross-validation over constraints: does a policy learnt under some hold under another?
+//! Cross-validation over constraints: does a policy learnt under some constraints hold under another?
 
 use std::collections::BTreeSet;
 
@@ -9,24 +9,24 @@ use serde::{Deserialize, Serialize};
 use crate::fit::cleaning;
 use crate::{EvaluateError, Evaluation, FitError, FitOptions, Model, Prepared, Progress, evaluate, fit};
 
-/// Movements under one constraint, predicted by what was learnt under all others.
+/// Prediction of the movements under one constraint by the policy learnt under all others.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ConstraintLeftOut {
     /// Its label.
     pub constraint: String,
-    /// Movements learnt from.
+    /// Number of movements in the training set.
     pub learnt_from: usize,
     /// Evaluation of the policy learnt under the others.
     pub evaluation: Evaluation,
 }
 
-/// Learns without each constraint in turn and evaluates on it; movements without a label are always learnt from. The same
-/// seed gives the same bits.
+/// Learns without each constraint in turn and evaluates on it. Movements without a label are always in the training set.
+/// The same seed gives the same bits.
 ///
 /// # Errors
-/// [`EvaluateError::Constraints`] if there are fewer than two labels, [`EvaluateError::Fit`] if the remainder is too
-/// little to learn from, and those of [`evaluate`].
+/// [`EvaluateError::Constraints`] if there are fewer than two labels, [`EvaluateError::Fit`] if the remaining movements
+/// are too few to learn from, and those of [`evaluate`].
 pub fn leave_constraints_out(
     prepared: &Prepared,
     options: &FitOptions,
@@ -60,7 +60,7 @@ pub(crate) fn in_units_of(model: &Model, prepared: &Prepared) -> Result<Prepared
     Ok(prepared.rescaled(&factors).map_err(|error| cleaning(&error))?)
 }
 
-/// Some of the movements, prepared as all were.
+/// Some of the movements, with the preparation of all.
 fn only(prepared: &Prepared, wanted: &[usize]) -> Prepared {
     let movements = wanted.iter().map(|&k| prepared.demonstrations.trajectories()[k].clone()).collect();
     Prepared {

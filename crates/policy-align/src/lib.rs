@@ -28,14 +28,14 @@
 //! |---|---|
 //! | prepare recordings | [`prepare()`]: each automatic choice is a [`Decision`] |
 //! | learn | [`fit()`]: a [`Model`] with its [`Trust`], every doubt a [`Finding`] |
-//! | learn from files larger than memory | [`Division`]: which are read at once; [`Digester`]: what stays of others; [`fit_with`] |
+//! | learn from files larger than memory | [`Division`]: the files read at once; [`Digester`]: digests of the others; [`fit_with`] |
 //! | store | [`Model`]: [`Model::save`], [`Model::load`], [`Model::policy`] in the units of the recording |
 //! | use | [`RollOut`] under constraints; [`CSource`] and [`to_onnx`] export a policy without dependencies, [`to_lerobot`] for LeRobot |
-//! | command | [`VelocityController`]: joint states in, velocities out, zero where it must not move |
+//! | command | [`VelocityController`]: joint states in, velocities out, zero when the robot must stop |
 //! | evaluate | [`evaluate()`] on other recordings, [`leave_constraints_out`] across constraints |
 //!
 //! Guides in `docs`: `your-own-data.md` (the program step by step), `which-learner.md`, `model-file.md`, `slope-gp.md`
-//! (equations). `docs/your-own-data.md` says what is found in recordings, and links the verdicts on 119 kinds of them.
+//! (equations). `docs/your-own-data.md` lists the faults found in recordings, and links the verdicts on 119 kinds.
 //!
 //! # Exit codes of the program
 //!
@@ -58,11 +58,11 @@
 //!   samples, and oblique projections only if a robot's inertia makes them so.
 //! - **Motion that depends on more than the recorded state** (time, a moving target): mostly "doubtful" or "do not use". What is constant during a
 //!   movement, such as a goal or a load, can be context: [`Model::in_context`].
-//! - **Mixed units**: constraints act at right angles in some unit. [`fit()`] learns it if the data determine it;
+//! - **Mixed units**: constraints project orthogonally in some unit. [`fit()`] learns it if the data determine it;
 //!   [`PrepareOptions::scale`] chooses it.
 //! - **Outside the demonstrated region** a policy extrapolates: [`ModelPolicy::is_supported`] is false there.
-//! - [`PrepareError`], [`FitError`], [`ModelError`], [`RollOutError`] and [`ExportError`] say what was refused and what
-//!   to do.
+//! - [`PrepareError`], [`FitError`], [`ModelError`], [`RollOutError`] and [`ExportError`] describe the fault and
+//!   the remedy.
 
 mod along;
 mod channel_joints;
@@ -85,7 +85,7 @@ mod serving;
 mod stored;
 mod trust;
 
-/// What a program needs besides, so that it depends on this crate alone.
+/// Dependencies that a program needs, re-exported so that it depends on this crate alone.
 pub use ::{align, constraints, demo_io, gp, kinematics, lwpr, motion, nalgebra, prepare, rand, smoothing};
 pub use channel_joints::joints_in_degrees;
 pub use choice::Choice;
@@ -111,12 +111,12 @@ pub use serving::{ControllerError, Halt, Quantity, VelocityCommand, VelocityCont
 pub use stored::{ModelError, checksum_of, sha256, sha256_of_file, write_together, write_whole};
 pub use trust::{AlignedNumbers, Trust, TrustNumbers};
 
-/// The program of the README, compiled.
+/// Compiles the program in the README.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;
 
-/// The program of docs/rust.md, compiled.
+/// Compiles the program in docs/rust.md.
 #[cfg(doctest)]
 #[doc = include_str!("../../../docs/rust.md")]
 struct RustPage;

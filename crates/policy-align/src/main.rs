@@ -17,7 +17,7 @@ fn main() -> ExitCode {
     ExitCode::from(exit as u8)
 }
 
-/// A panic is a bug of ours, but for those at damaged files, which become errors.
+/// A panic is a bug in this program, except when a damaged file causes it; then it becomes an error.
 fn report(panic: &PanicHookInfo<'_>) {
     if demo_io::catches_panics() {
         return;

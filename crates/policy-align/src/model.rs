@@ -11,30 +11,30 @@ use crate::{Decision, Learnt, LeftOut, Prepared, StateChannel, Trust, sha256_of_
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Model {
-    /// The program that made it, and when.
+    /// The program that made the model, and the time.
     pub made_by: MadeBy,
-    /// Dimensions of the state, n of them.
+    /// Dimensions of the state, (n).
     pub state: Vec<StateChannel>,
-    /// Dimensions of the context, p of them; none where movements depend on the state alone.
+    /// Dimensions of the context, (p); empty if movements depend on the state alone.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub context: Vec<StateChannel>,
-    /// The context that [`Model::in_context`] chose, (p) in the units of the recording, of no length without one. It is not stored.
+    /// The context fixed by [`Model::in_context`], (p) in the units of the recording; empty without one. It is not stored.
     #[serde(skip, default = "nowhere")]
     pub chosen_context: DVector<f64>,
-    /// Seconds; the median over trajectories.
+    /// Time step in seconds: the median over trajectories.
     pub time_step: f64,
     /// The training data.
     pub data: DataSummary,
     /// All automatic decisions, in order.
     pub decisions: Vec<Decision>,
-    /// Seed of every random choice.
+    /// Random seed.
     pub seed: u64,
-    /// How far to trust it.
+    /// How far the policy can be trusted.
     pub trust: Trust,
-    /// Rows learnt from, each predicted without its movement. They are not stored.
+    /// The training rows, each predicted without its movement. They are not stored.
     #[serde(skip)]
     pub predicted: Vec<PredictedSpeed>,
-    /// The policy, of states and contexts that were multiplied by [`StateChannel::scale`].
+    /// The policy, as a function of states and contexts multiplied by [`StateChannel::scale`].
     pub learnt: Learnt,
 }
 
@@ -43,15 +43,15 @@ pub(crate) fn nowhere() -> DVector<f64> {
     DVector::zeros(0)
 }
 
-/// Speed along a movement, as it was seen and as the Gaussian process predicts it from all other movements, in scaled units of the state
+/// Speed along a movement, as observed and as predicted by the Gaussian process from all other movements, in scaled units of the state
 /// per second.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PredictedSpeed {
-    /// Where it was seen; of a mean of samples the first of them.
+    /// Index of the sample; for a mean of samples, that of the first.
     pub index: SampleIndex,
-    /// As it was learnt from.
+    /// The observed speed, as used for learning.
     pub seen: f64,
-    /// As it is predicted.
+    /// The predicted speed.
     pub predicted: f64,
 }
 
@@ -61,7 +61,7 @@ pub struct PredictedSpeed {
 pub struct MadeBy {
     /// "policy-align 0.1.0".
     pub program: String,
-    /// Coordinated universal time, ISO 8601; empty until it is known.
+    /// Coordinated universal time, ISO 8601; empty until the caller sets it.
     pub time: String,
 }
 
@@ -69,22 +69,22 @@ pub struct MadeBy {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct DataSummary {
-    /// The files, in the order they were given.
+    /// The files, in the given order.
     pub files: Vec<FileSummary>,
-    /// Episodes learnt from.
+    /// Number of episodes in the training data.
     pub episodes: usize,
-    /// Samples learnt from.
+    /// Number of samples in the training data.
     pub samples: usize,
     /// Duration of the longest episode, in seconds.
     pub longest: f64,
-    /// Median speed over all samples that were held at once, in scaled units of the state per second: what is fast and what is slow.
+    /// Median speed over all samples that were held in memory, in scaled units of the state per second; the reference for fast and slow.
     pub speed: f64,
-    /// Episodes not learnt from.
+    /// Episodes excluded from learning.
     pub left_out: Vec<LeftOut>,
 }
 
 impl DataSummary {
-    /// Of these movements and their velocities, (n, N), without files.
+    /// The summary of these movements and their velocities, (n, N), without files.
     pub(crate) fn of(prepared: &Prepared, velocities: &DMatrix<f64>) -> DataSummary {
         let movements = prepared.demonstrations.trajectories();
         let seconds = movements.iter().map(|movement| movement.seconds(0, movement.n_samples() - 1));
@@ -98,7 +98,7 @@ impl DataSummary {
         }
     }
 
-    /// Of further recordings as well, of whose speeds nothing is known.
+    /// The summary extended by further recordings, whose speeds are unknown.
     pub(crate) fn and(mut self, more: &DataSummary) -> DataSummary {
         self.files.extend(more.files.iter().cloned());
         self.left_out.extend(more.left_out.iter().cloned());
@@ -110,7 +110,7 @@ impl DataSummary {
 }
 
 impl MadeBy {
-    /// This program, at a time that is not known yet.
+    /// This program, with the time not yet set.
     pub fn this() -> MadeBy {
         MadeBy { program: concat!("policy-align ", env!("CARGO_PKG_VERSION")).to_owned(), time: String::new() }
     }
@@ -127,14 +127,14 @@ impl Model {
         DVector::from_iterator(self.state.len(), self.state.iter().map(|channel| channel.scale))
     }
 
-    /// What the learner's potential is multiplied by: 1 / s² where all channels share the scale s, else 1.
+    /// Factor of the learner's potential: 1 / s² if all channels share the scale s, otherwise 1.
     pub(crate) fn potential_factor(&self) -> f64 {
         let scale = self.state[0].scale;
         if self.state.iter().all(|channel| channel.scale == scale) { scale.powi(-2) } else { 1.0 }
     }
 
-    /// Factors by which recordings are multiplied as those learnt from were, as
-    /// [`PrepareOptions::scale`](crate::PrepareOptions::scale) takes them: of channels that have one.
+    /// Factors for scaling recordings like the training data, in the form of [`PrepareOptions::scale`](crate::PrepareOptions::scale);
+    /// channels without a factor are omitted.
     pub fn scale(&self) -> Vec<(String, f64)> {
         StateChannel::factors(self.inputs())
     }
@@ -144,19 +144,19 @@ impl Model {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FileSummary {
-    /// Without folders, so that a model reveals nothing of its machine.
+    /// The name without folders, so that a model reveals nothing about its machine.
     pub name: String,
-    /// Of its bytes, hexadecimal.
+    /// SHA-256 of its bytes, hexadecimal.
     pub sha256: String,
-    /// Its size.
+    /// Its size in bytes.
     pub bytes: u64,
 }
 
 impl FileSummary {
-    /// Of a file as it is now.
+    /// The summary of a file in its present state.
     ///
     /// # Errors
-    /// What the system says.
+    /// The system's error.
     pub fn of(path: &Path) -> io::Result<FileSummary> {
         let (sha256, bytes) = sha256_of_file(path)?;
         let name =

@@ -5,17 +5,17 @@ use nalgebra::{DMatrix, DMatrixView, DVector, DVectorView, DVectorViewMut};
 
 use crate::{Learnt, Model, StateChannel};
 
-/// Share of the prior variance of a Gaussian process that the demonstrations must have taken away where it is used.
+/// Least share of a Gaussian process's prior variance that the demonstrations must explain at a supported state.
 const LEAST_KNOWN: f64 = 0.5;
-/// Share of its range by which a channel may lie beyond the demonstrated range. A Gaussian process with a trend follows it
-/// at any distance, where no demonstration supports it.
+/// Share of its range by which a channel may lie beyond the demonstrated range. A Gaussian process with a trend extrapolates it to
+/// any distance, without support by demonstrations.
 pub(crate) const BEYOND: f64 = 0.25;
 
-/// A model's policy in the units of the recording: π(x) = S⁻¹ π'(S x), where S multiplies every channel by its
-/// [`scale`](crate::StateChannel::scale) and π' is the policy that was learnt.
+/// A model's policy in the units of the recording: π(x) = S⁻¹ π'(S x). S multiplies every channel by its
+/// [`scale`](crate::StateChannel::scale), and π' is the learnt policy.
 ///
-/// Its state is that of the model, (n), in the context that was chosen. Of a model with a context in which none was chosen, the
-/// context follows the state, (n + p), and the action along it is 0.
+/// Its state is that of the model, (n), in the fixed context. With an open context, the context follows the state, (n + p), and the
+/// action along it is 0.
 #[derive(Debug)]
 pub struct ModelPolicy<'a> {
     learnt: &'a dyn LearntPolicy,
@@ -25,10 +25,10 @@ pub struct ModelPolicy<'a> {
     bounds: Vec<[f64; 2]>,
 }
 
-/// A model's potential, φ(x) = φ'(S x) / s², where s is the scale that all channels share, and 1 if they differ.
+/// A model's potential, φ(x) = φ'(S x) / s². Here s is the scale that all channels share, or 1 if they differ.
 ///
-/// Where they share one, the policy is −∇φ. Where they differ, π = −S⁻²∇φ: still downhill, but no longer straight down,
-/// because distances in the user's units are not those that were learnt with. φ is then in the learner's units.
+/// If they share one, the policy is −∇φ. If they differ, π = −S⁻²∇φ: still downhill, but not in the steepest direction, because
+/// distances in the user's units are not those of the learner. φ is then in the learner's units.
 #[derive(Debug)]
 pub struct ModelPotential<'a> {
     learnt: &'a dyn LearntPolicy,
@@ -36,7 +36,7 @@ pub struct ModelPotential<'a> {
     per_unit: f64,
 }
 
-/// What the learner's policy takes beside a state: the context that was chosen, (p) or none, and the scales of all, (n + p).
+/// Inputs of the learner's policy besides the state: the fixed context, (p) or empty, and the scales of all inputs, (n + p).
 #[derive(Debug, Clone)]
 struct Inputs {
     scale: DVector<f64>,
@@ -44,7 +44,7 @@ struct Inputs {
 }
 
 impl Model {
-    /// The policy, in the units of the recording, in the context that was chosen.
+    /// The policy in the units of the recording and in the fixed context.
     pub fn policy(&self) -> ModelPolicy<'_> {
         let (learnt, per_unit) = (self.learnt.policy(), self.potential_factor());
         let scale = DVector::from_iterator(learnt.dim(), self.inputs().map(|channel| channel.scale));
@@ -57,8 +57,8 @@ impl Model {
         ModelPolicy { learnt, inputs, potential, least_support, bounds: self.bounds() }
     }
 
-    /// Range of every channel that counts as known: the demonstrated range, a quarter wider on either side; of the state, then of the
-    /// context, (n + p).
+    /// Range of every channel in which the policy is supported: the demonstrated range, a quarter wider on either side. The state's
+    /// channels come first, then the context's, (n + p).
     pub fn bounds(&self) -> Vec<[f64; 2]> {
         let bound = |channel: &StateChannel| {
             let beyond = BEYOND * (channel.high - channel.low);
@@ -69,14 +69,14 @@ impl Model {
 }
 
 impl ModelPolicy<'_> {
-    /// Whether a state (n) has the [support](LearntPolicy::support) that acting on it needs: an LWPR policy has a
-    /// receptive field there, a Gaussian process has lost half of its prior variance; and no channel is beyond
+    /// Whether a state (n) has sufficient [support](LearntPolicy::support) for acting. An LWPR policy must have a receptive field
+    /// there; the demonstrations must explain half of a Gaussian process's prior variance; and no channel may be beyond
     /// [`Model::bounds`].
     pub fn is_supported(&self, state: DVectorView<'_, f64>) -> bool {
         self.supported(state.as_view(), self.least_support)[0]
     }
 
-    /// Whether each of some states (n, N) is, by [`LearntPolicy::supported`].
+    /// Whether each of these states (n, N) is supported, by [`LearntPolicy::supported`].
     pub fn are_supported(&self, states: DMatrixView<'_, f64>) -> Vec<bool> {
         self.supported(states, self.least_support)
     }
@@ -87,7 +87,7 @@ impl ModelPolicy<'_> {
         self.bounds.iter().zip(inputs).all(|([low, high], x)| (low..=high).contains(&x))
     }
 
-    /// The smallest support of a known state.
+    /// The least support of a supported state.
     pub fn least_support(&self) -> f64 {
         self.least_support
     }
@@ -113,7 +113,7 @@ impl LearntPolicy for ModelPolicy<'_> {
         self.potential.as_ref().map(|potential| potential as &dyn Potential)
     }
 
-    /// As of the policy that was learnt; 0 beyond [`Model::bounds`].
+    /// The learnt policy's support; 0 beyond [`Model::bounds`].
     fn support(&self, state: DVectorView<'_, f64>) -> f64 {
         if self.is_within(state) { self.inputs.scaled(state, |state| self.learnt.support(state)) } else { 0.0 }
     }
@@ -185,8 +185,7 @@ impl Potential for ModelPotential<'_> {
 }
 
 thread_local! {
-    /// S x, and what the learner's policy says of it, of state and context. Each thread has one, so that none allocates more than
-    /// once.
+    /// Buffers for S x and for the learner's result on state and context. Each thread has its own, which is allocated only once.
     static SCALED: RefCell<Vec<f64>> = const { RefCell::new(Vec::new()) };
     static WHOLE: RefCell<Vec<f64>> = const { RefCell::new(Vec::new()) };
 }
@@ -197,7 +196,7 @@ impl Inputs {
         self.scale.len() - self.context.len()
     }
 
-    /// Evaluates at S x.
+    /// Evaluates a function at S x.
     fn scaled<T>(&self, state: DVectorView<'_, f64>, evaluate: impl FnOnce(DVectorView<'_, f64>) -> T) -> T {
         assert_eq!(state.len(), self.dim(), "a state has as many dimensions as the policy");
         SCALED.with_borrow_mut(|place| {
@@ -207,7 +206,7 @@ impl Inputs {
         })
     }
 
-    /// S x with the context that was chosen, of each state (n, N): (n + p, N).
+    /// S x with the fixed context, for each state (n, N): (n + p, N).
     fn scaled_columns(&self, states: DMatrixView<'_, f64>) -> DMatrix<f64> {
         let n = self.dim();
         assert_eq!(states.nrows(), n, "a state has as many dimensions as the policy");
@@ -215,7 +214,7 @@ impl Inputs {
         DMatrix::from_fn(self.scale.len(), states.ncols(), |k, at| input(k, at) * self.scale[k])
     }
 
-    /// The part along the state of vectors in the learner's units, (n + p, N), in those of the recording, (n, N).
+    /// The state components of vectors in the learner's units, (n + p, N), converted to those of the recording, (n, N).
     fn unscaled(&self, vectors: DMatrix<f64>) -> DMatrix<f64> {
         let mut vectors = vectors.resize_vertically(self.dim(), 0.0);
         for mut vector in vectors.column_iter_mut() {
@@ -224,7 +223,7 @@ impl Inputs {
         vectors
     }
 
-    /// The part along the state of a vector at S x.
+    /// The state components of a vector evaluated at S x.
     fn vector_into<T>(
         &self,
         state: DVectorView<'_, f64>,

@@ -7,8 +7,8 @@ use crate::channel_joints::{ChannelJoints, joint_of, unit};
 
 /// The frames of a robot's links along recordings or roll-outs, for [`demo_io::write_with_robot`].
 ///
-/// Channels are joints of the same name; joints that no channel names stay at 0. If no channel has the name of a joint and there
-/// are as many of one as of the other, they belong together in their order.
+/// Channels are joints of the same name; joints without a channel stay at 0. If no channel has the name of a joint and their
+/// numbers are equal, they are matched in order.
 #[derive(Debug, Clone)]
 pub struct RobotFrames {
     text: String,
@@ -17,20 +17,20 @@ pub struct RobotFrames {
     by_name: bool,
     /// The rows of a state that are joints.
     rows: Vec<usize>,
-    /// Radians or metres in a unit of each of them.
+    /// Radians or metres per unit of each of them.
     units: DVector<f64>,
-    /// All but the root, and their parents.
+    /// All links but the root, and their parents.
     links: Vec<LinkId>,
     names: Vec<[String; 2]>,
 }
 
 impl RobotFrames {
-    /// From the text of a URDF and the channels of the recordings, but for `others`, which are no joints (a context). Those in
-    /// degrees, centimetres or millimetres are converted.
+    /// Reads a robot from the text of a URDF, and matches the channels of the recordings except `others`, which are not joints
+    /// (a context). Degrees, centimetres and millimetres are converted.
     ///
     /// # Errors
-    /// In a sentence: what is wrong with the text, or which channel is no joint, or that there are more or fewer channels than
-    /// joints.
+    /// A sentence that describes a fault of the text, names a channel that is not a joint, or says that the numbers of channels
+    /// and joints differ.
     pub fn from_urdf(text: &str, channels: &[Channel], others: &[String]) -> Result<Self, String> {
         let robot = RobotModel::from_urdf(text).map_err(|error| error.to_string())?;
         let rows: Vec<usize> = (0..channels.len()).filter(|&row| !others.contains(&channels[row].name)).collect();
@@ -57,7 +57,7 @@ impl RobotFrames {
         Ok(RobotFrames { text: text.to_owned(), joints, by_name, rows, units, links, names, robot })
     }
 
-    /// Which joints the channels are, in a line.
+    /// A description in one line of which joints the channels are.
     pub fn matching(&self) -> String {
         let RobotFrames { robot, joints, .. } = self;
         let name = |&place: &usize| robot.joints()[place].name();

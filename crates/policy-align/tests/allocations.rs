@@ -1,4 +1,5 @@
-//! What allocates: no action of a policy, after the first call on a thread, and no preparation of recordings that are handed over.
+//! Checks that no action of a policy allocates after the first call on a thread, and that preparing owned recordings copies no
+//! numbers.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
@@ -30,7 +31,7 @@ fn recordings() -> Recordings {
         .recordings
 }
 
-/// Recordings that are handed over become the demonstrations.
+/// Owned recordings become the demonstrations.
 #[test]
 fn preparing_copies_no_numbers() {
     let (recordings, options) = (recordings(), PrepareOptions::default());

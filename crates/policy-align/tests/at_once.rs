@@ -1,4 +1,4 @@
-//! Files that are not held together: digests of them, in one process or in parts of several, give one model.
+//! Files that are not held in memory together: their digests, made in one process or in parts by several, give the same model.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
@@ -11,10 +11,10 @@ use running::{Ran, command, examples, run_in};
 use serde_json::Value;
 
 const FILES: usize = 5;
-/// Of these files one is read at once.
+/// With this limit one of the files is read at once.
 const AT_ONCE: &str = "--at-once 40kB";
 
-/// The toy's movements in several files; `noise`: of velocities, as a share of their size.
+/// The toy's movements in several files; `noise` is that of velocities, relative to their size.
 fn folder(noise: f64) -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     let text = std::fs::read_to_string(examples().join("toy.csv")).unwrap();
@@ -39,7 +39,7 @@ fn done(ran: &Ran) {
     assert_eq!(ran.code, Some(0), "{}{}", ran.out, ran.err);
 }
 
-/// A model without the time it was made at.
+/// A model without its creation time.
 fn model(path: &Path) -> Value {
     let mut model: Value = serde_json::from_slice(&std::fs::read(path).unwrap()).unwrap();
     model["made_by"]["time"] = Value::Null;
@@ -51,8 +51,8 @@ fn all_files() -> String {
     (0..FILES).map(|at| format!("{at}.csv")).collect::<Vec<_>>().join(" ")
 }
 
-/// Digests of exact velocities and of noisy ones: in one process with one thread or more, in parts made in any order, the same bits; and a
-/// policy as good as that of all files at once.
+/// Digests of exact and of noisy velocities give the same bits in one process with any number of threads and in parts made in any order,
+/// and a policy as good as that of all files at once.
 #[test]
 fn parts_give_the_model_of_one_process() {
     for noise in [0.0, 0.1] {
@@ -85,7 +85,7 @@ fn parts_give_the_model_of_one_process() {
     }
 }
 
-/// Files of movements of π(x) = −2x along a line of its own each, which moves at `push`; the first file's movements begin nearer to the goal.
+/// Files of movements of π(x) = −2x, each along a separate line that moves at `push`; the first file's movements begin nearer to the goal.
 fn rails(files: usize, nearer: f64, push: f64) -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     for file in 0..files {
@@ -100,7 +100,7 @@ fn rails(files: usize, nearer: f64, push: f64) -> tempfile::TempDir {
                 let u = [speed * along[0] - push * along[1], speed * along[1] + push * along[0]];
                 let t = f64::from(sample) * 0.05;
                 writeln!(text, "{episode},{t:.2},{:.9},{:.9},{:.9},{:.9}", x[0], x[1], u[0], u[1]).unwrap();
-                // The velocity changes with the speed alone.
+                // The velocity depends only on the speed.
                 let way = -(-2.0f64 * 0.05).exp_m1() / 2.0;
                 x = [0, 1].map(|axis| x[axis] + along[axis] * speed * way + [-along[1], along[0]][axis] * push * 0.05);
             }
@@ -110,7 +110,7 @@ fn rails(files: usize, nearer: f64, push: f64) -> tempfile::TempDir {
     folder
 }
 
-/// Where only files that are not held together have movements, the model acts.
+/// The model supports states that occur only in files that are not held in memory together.
 #[test]
 fn the_places_of_all_files_are_known() {
     let folder = rails(5, 0.3, 0.0);
@@ -126,7 +126,7 @@ fn the_places_of_all_files_are_known() {
     assert!(errors.iter().all(|error| *error < 1e-3) && said["predictions"][0]["known"] == true, "{}", ran.out);
 }
 
-/// A push is found in the files that are held together, however few of all they are.
+/// A push is found in the files that are read at once, even if they are few.
 #[test]
 fn pushes_are_found_at_hand() {
     let folder = rails(5, 1.0, 0.2);
@@ -139,7 +139,7 @@ fn pushes_are_found_at_hand() {
     }
 }
 
-/// Positions alone, and a file of which nothing is learnt.
+/// Positions without velocities, and a file without usable data.
 #[test]
 fn positions_and_empty_files_are_read() {
     let folder = rails(5, 1.0, 0.0);
@@ -152,7 +152,7 @@ fn positions_and_empty_files_are_read() {
     assert_eq!(model["data"]["left_out"][0]["episode"], "3/0");
 }
 
-/// What each wrong line says.
+/// The error of each wrong command line.
 #[test]
 fn parts_that_do_not_fit_are_refused() {
     let folder = folder(0.0);
@@ -163,7 +163,7 @@ fn parts_that_do_not_fit_are_refused() {
         assert!(ran.code.is_some_and(|code| (1..4).contains(&code)), "{line}: {}{}", ran.out, ran.err);
         assert!(ran.err.contains(expected) && ran.err.lines().count() == 3, "{line}: {}", ran.err);
     };
-    // What each line proposes leads to the model.
+    // Each suggested command leads towards the model.
     let mut line = format!("fit {files} {AT_ONCE} --shard 1/2");
     for next in ["--shard 2/2", "--merge part-1-of-2.json part-2-of-2.json", "plot model.json -o model.svg"] {
         let ran = run_in(path, &line);
@@ -193,8 +193,8 @@ fn parts_that_do_not_fit_are_refused() {
     refused(&format!("fit {files} {AT_ONCE}"), "channels are");
 }
 
-/// A fit that could not be ended goes on with the files that it had not read, and gives the same model; files that have changed since and
-/// other options are read anew.
+/// An interrupted fit resumes with the unread files and gives the same model; files that have changed since are read again, and so are all
+/// files with other options.
 #[test]
 fn an_interrupted_fit_goes_on() {
     let folder = folder(0.1);
@@ -205,7 +205,7 @@ fn an_interrupted_fit_goes_on() {
     let kept = path.join("m.json.unfinished");
     assert!(!path.join("whole.json.unfinished").exists() && !kept.exists());
 
-    // The last of the further files cannot be read; one after the other, so that the others have been.
+    // The last of the further files cannot be read. They are read one after the other, so that the others have been read before.
     let last = std::fs::read(path.join("4.csv")).unwrap();
     let damage = || {
         let text = String::from_utf8(last.clone()).unwrap();
@@ -222,7 +222,7 @@ fn an_interrupted_fit_goes_on() {
     let lines = || std::fs::read_to_string(&kept).unwrap().lines().filter(|line| line.ends_with('}')).count();
     assert_eq!(lines(), 3, "three of four further files were read");
 
-    // An interrupt may cut the last line.
+    // An interrupt may tear the last line.
     let text = std::fs::read(&kept).unwrap();
     std::fs::write(&kept, &text[..text.len() - 30]).unwrap();
     assert!(alone().err.contains("goes on: 2 of 4 further files were read by an earlier run"));
@@ -233,7 +233,7 @@ fn an_interrupted_fit_goes_on() {
     assert_eq!(model(&path.join("m.json")), model(&path.join("whole.json")));
     assert!(!kept.exists());
 
-    // What was kept is of other options, or of a file that has changed.
+    // The kept digests are for other options, or for a file that has changed.
     damage();
     assert!(alone().code != Some(0) && lines() == 3);
     std::fs::write(path.join("4.csv"), &last).unwrap();
@@ -242,7 +242,7 @@ fn an_interrupted_fit_goes_on() {
     damage();
     assert!(alone().code != Some(0) && lines() == 3);
     std::fs::write(path.join("4.csv"), &last).unwrap();
-    // Of the same size.
+    // The changed file has the same size.
     let text = std::fs::read_to_string(path.join("1.csv")).unwrap();
     let digit = |line: &str| format!("{}1\n", &line[..line.len() - 1]);
     let (header, rows) = text.split_once('\n').unwrap();
@@ -251,7 +251,7 @@ fn an_interrupted_fit_goes_on() {
     done(&run_in(path, &line));
     assert_eq!(model(&path.join("m.json")), model(&path.join("changed.json")));
 
-    // Shares of rows follow from the sizes of all files: where one grows, digests of the others are others.
+    // Shares of rows depend on the sizes of all files: if one grows, the digests of the others change.
     damage();
     assert!(alone().code != Some(0) && lines() == 3);
     let longer = String::from_utf8(last).unwrap() + "99,0.0,0.1,0.1,0.1,0.1\n99,0.05,0.105,0.105,0.1,0.1\n";
@@ -260,7 +260,7 @@ fn an_interrupted_fit_goes_on() {
     assert!(grown.code == Some(0) && !grown.err.contains("goes on"), "{}", grown.err);
 }
 
-/// What a fit has not made it does not write over, follow or remove; and a folder that cannot be written to is found before anything is read.
+/// A fit does not overwrite, follow or remove files that it has not made, and detects an unwritable folder before reading.
 #[test]
 fn files_of_others_are_left_alone() {
     let folder = folder(0.0);
@@ -285,12 +285,12 @@ fn files_of_others_are_left_alone() {
     assert!(!kept.exists());
 }
 
-/// Of this file, five pieces of 256 kB, two are read at once.
+/// With this limit two of the file's five pieces of 256 kB are read at once.
 const PIECES: &str = "--at-once 600kB";
 const MOVEMENTS: usize = 210;
 const SAMPLES: usize = 100;
 
-/// Movements of π(x) = −2x with noise, along a line of its own each, in one file.
+/// Movements of π(x) = −2x with noise, each along a separate line, in one file.
 fn large(name: &str) -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     let mut text = "episode,t,x,y,vx,vy\n".to_owned();
@@ -313,8 +313,8 @@ fn large(name: &str) -> tempfile::TempDir {
     folder
 }
 
-/// One file that is larger than what is held at once: with one thread or more, in parts made in any order, and after an interrupt, the same
-/// bits; and a policy as good as that of the whole file.
+/// A file larger than the limit gives the same bits with any number of threads, in parts made in any order, and after an interrupt, and a
+/// policy as good as that of the whole file.
 #[test]
 fn pieces_of_one_file_give_one_model() {
     let folder = large("large.csv");
@@ -355,7 +355,7 @@ fn pieces_of_one_file_give_one_model() {
         other.err
     );
 
-    // A fit that cannot write its model has kept all digests; what an interrupt leaves of them is taken.
+    // A fit that cannot write its model has kept all digests; the next run uses the digests that an interrupt leaves.
     let kept = path.join("m.json.unfinished");
     let not_written = || {
         std::fs::create_dir(path.join("m.trust.html")).unwrap();
@@ -379,7 +379,7 @@ fn pieces_of_one_file_give_one_model() {
     assert_eq!(one, model(&path.join("m.json")));
     assert!(!kept.exists());
 
-    // Digests are of the file as it was.
+    // Digests of the file's earlier state are not used.
     for name in ["m.json", "m.trust.html", "m.trust.json"] {
         std::fs::remove_file(path.join(name)).unwrap();
     }
@@ -392,7 +392,7 @@ fn pieces_of_one_file_give_one_model() {
     assert!(anew.code == Some(0) && !anew.err.contains("goes on"), "{}", anew.err);
 }
 
-/// Movements are called as in the whole file, messages name its lines, and each file is listed once.
+/// Movements have the same names as in the whole file, messages give its line numbers, and each file is listed once.
 #[test]
 fn pieces_say_what_the_files_say() {
     let folder = large("a.csv");
@@ -422,7 +422,7 @@ fn pieces_say_what_the_files_say() {
         let refused = fit("-o wrong.json");
         assert!(refused.code != Some(0) && refused.err.contains(&format!("a.csv, line {line}, ")), "{}", refused.err);
     }
-    // Lines of episodes, and a coordinate that changes in few movements.
+    // Rows with a coordinate that changes in few movements.
     let level = |(at, row): (usize, &str)| match at {
         0 => "episode,t,x,y,z\n".to_owned(),
         at => {
@@ -442,7 +442,7 @@ fn pieces_say_what_the_files_say() {
         assert_eq!(model["data"]["files"][0]["name"], name);
         assert_eq!(model["state"].as_array().unwrap().len(), 3);
     }
-    // One that cannot be cut is read as it is.
+    // A file that cannot be divided is read whole.
     let rows: Vec<&str> = text.lines().collect();
     let (first, second) = rows[1..].split_at(SAMPLES);
     let together = first.iter().zip(second).flat_map(|(a, b)| [*a, *b]).chain(second[SAMPLES..].iter().copied());
@@ -452,14 +452,14 @@ fn pieces_say_what_the_files_say() {
     assert!(whole.out.contains("210 episodes, 21000 samples"), "{}", whole.out);
 }
 
-/// Ctrl-C while digests are made, in several attempts, since a fast machine may be done before the signal comes.
+/// Ctrl-C while digests are made, in several attempts, since a fast machine may finish before the signal arrives.
 #[cfg(target_os = "linux")]
 #[test]
 fn an_interrupt_says_that_the_same_command_goes_on() {
     use std::process::{Command, Stdio};
     let folder = large("large.csv");
     let (path, kept) = (folder.path(), folder.path().join("m.json.unfinished"));
-    // Whatever started the tests may have the signal ignored, which a program inherits: `env` undoes it.
+    // The parent of the tests may have set the signal to be ignored, which a program inherits; `env` resets it.
     let interrupted = || {
         let fit = command(path);
         let mut env = Command::new("env");
@@ -470,7 +470,7 @@ fn an_interrupt_says_that_the_same_command_goes_on() {
         while lines() < 2 && child.try_wait().unwrap().is_none() {
             std::thread::sleep(std::time::Duration::from_millis(1));
         }
-        // It may have ended.
+        // The process may have ended.
         let _ = Command::new("kill").args(["-INT", &child.id().to_string()]).stderr(Stdio::null()).status();
         let ran: Ran = child.wait_with_output().unwrap().into();
         ran.err.contains("every piece that was read is kept; the same command goes on").then_some(ran.code)

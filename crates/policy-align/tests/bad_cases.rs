@@ -1,9 +1,10 @@
-//! Good and bad recordings, learnt from without a flag: the verdict on each, compared with the truth.
+//! Good and bad recordings, learnt with default flags: the verdict on each, compared with the truth.
 //!
-//! No verdict may be "good" unless the policy is right, and none "do not use" where it is. `cases/verdicts.tsv` holds
-//! each case with its first finding, its verdict and what the verdict cannot know: the error of the unconstrained policy
-//! (nUPE) on 20 new movements. `UPDATE_CASES=1 cargo test --release -p policy-align --test bad_cases` writes it anew. A
-//! debug build tests some of the cases only.
+//! A verdict may be "good" only if the policy is right, and "do not use" only if it is wrong. `cases/verdicts.tsv` lists
+//! each case with its first finding, its verdict and a number that the verdict cannot use: the error of the
+//! unconstrained policy (nUPE) on 20 new movements.
+//! `UPDATE_CASES=1 cargo test --release -p policy-align --test bad_cases` regenerates it. A debug build tests only some
+//! of the cases.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
@@ -17,26 +18,26 @@ use cases::{Case, Named};
 use policy_align::{FitOptions, LearnerChoice, PrepareOptions, Progress, TrustNumbers, Verdict, fit, prepare};
 use rayon::prelude::*;
 
-/// Errors below this are all alike.
+/// Errors below this count as equal.
 const NEGLIGIBLE: f64 = 1e-3;
 /// The seed of the table.
 const SEED: u64 = 1;
-/// A debug build looks at every so many cases.
+/// A debug build tests one in this many cases.
 const EVERY: usize = if cfg!(debug_assertions) { 9 } else { 1 };
 
-/// What came of a case.
+/// The result of a case.
 struct Said {
     name: String,
-    /// None: refused.
+    /// `None` if the recordings were refused.
     verdict: Option<Verdict>,
     words: String,
     /// The other findings.
     others: Vec<String>,
-    /// True error; none where nothing was learnt.
+    /// True error; `None` if nothing was learnt.
     error: Option<f64>,
-    /// The policy is right below it.
+    /// The policy is right below this error.
     right: f64,
-    /// What the verdict rests on.
+    /// The numbers behind the verdict.
     numbers: Option<TrustNumbers>,
 }
 
@@ -65,7 +66,7 @@ fn said(named: &Named, seed: u64, learner: LearnerChoice) -> Said {
     let mut findings = fit.trust.findings.iter().map(|finding| finding.what.clone());
     let words = findings.next().unwrap_or_default();
     let others = findings.collect();
-    // Exchanged rows and columns are other states than those of the true policy.
+    // If rows and columns are exchanged, the states differ from those of the true policy.
     let error = (fit.learnt.policy().dim() == case.dim()).then(|| error(&case, &fit));
     Said {
         name,
@@ -83,7 +84,7 @@ fn error(case: &Case, fit: &policy_align::Model) -> f64 {
 }
 
 impl Said {
-    /// Good though it is wrong, or not to be used though it is right.
+    /// Whether the verdict is good although the policy is wrong, or "do not use" although it is right.
     fn is_lie(&self) -> bool {
         match (self.verdict, self.error) {
             (Some(Verdict::Good), Some(error)) => error >= self.right,
@@ -119,7 +120,7 @@ fn document() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/cases/verdicts.tsv")
 }
 
-/// Words without their numbers, which differ a little from processor to processor.
+/// Text without its numbers, which differ slightly between processors.
 fn without_numbers(words: &str) -> String {
     words.chars().filter(|c| !c.is_ascii_digit() && !"−-+.".contains(*c)).collect()
 }
@@ -154,8 +155,9 @@ fn table(all: &[Said]) -> String {
     text
 }
 
-/// Verdicts against the truth on other seeds: `SEEDS=11,12 cargo test --release -p policy-align --test bad_cases --
-/// --ignored --nocapture`; `LEARNER=policy-align` for that one, `NUMBERS=1` for what verdicts rest on.
+/// Compares verdicts with the truth for other seeds:
+/// `SEEDS=11,12 cargo test --release -p policy-align --test bad_cases -- --ignored --nocapture`; `LEARNER=policy-align`
+/// selects that learner, `NUMBERS=1` prints the numbers behind the verdicts.
 #[test]
 #[ignore = "takes minutes; for whoever changes a threshold"]
 fn confusion() {

@@ -1,6 +1,6 @@
-//! Constraints that are named: on robots, in the channels, and as a file that a roll-out reads.
+//! Estimated constraints: on robots, in the channels, and as a file for roll-outs.
 
-#![allow(clippy::unwrap_used)] // A panic is how a test fails.
+#![allow(clippy::unwrap_used)] // A failing test panics.
 #![allow(clippy::print_stdout, reason = "the slow test prints what it measures")]
 
 use std::path::Path;
@@ -44,11 +44,11 @@ fn arm(axes: &[&str]) -> String {
 const SEVEN: [&str; 7] = ["0 0 1", "0 1 0", "1 0 0", "0 1 0", "0 0 1", "0 1 0", "1 0 0"];
 const FOUR: [&str; 4] = ["0 0 1", "0 1 0", "0 1 0", "0 0 1"];
 
-/// Euler steps a sample of a movement in time: the link leaves its plane by a two-hundredth of what it does with one step. With 20
-/// it leaves it by more than the error of slopes.
+/// Euler steps per sample of an accurately integrated movement. The link leaves its plane by a two-hundredth of its deviation with one
+/// step. With 20 steps the deviation would exceed the error of slopes.
 const IN_TIME: usize = 200;
 
-/// Movements of a robot whose link keeps to a plane, another from the middle on; and the normals.
+/// Movements of a robot whose link stays in a plane, in another one from the middle on; also returns the normals.
 fn recorded(
     (urdf, link): (&str, &str),
     movements: usize,
@@ -106,7 +106,7 @@ fn learnt(recordings: &Recordings, max_rows: usize) -> (Model, Prepared) {
     (model, prepared)
 }
 
-/// Of all true stretches: found on the link, normals within 1 and 5 degrees; and switches within two samples.
+/// Counts of true stretches found on the link, with normals within 1 and within 5 degrees; and of switches within two samples.
 fn counted(found: &[ConstraintStretch], normals: &[[Vector3<f64>; 2]], link: &str) -> [usize; 4] {
     let mut counts = [0; 4];
     for (k, pair) in normals.iter().enumerate() {
@@ -128,7 +128,7 @@ fn counted(found: &[ConstraintStretch], normals: &[[Vector3<f64>; 2]], link: &st
     counts
 }
 
-/// Planes that the tip of a four-joint arm keeps are named, and a roll-out reads them.
+/// Planes kept by the tip of a four-joint arm are named, and a roll-out reads them.
 #[test]
 fn planes_of_a_gripper_are_named_and_repeated() {
     let urdf = arm(&FOUR);
@@ -155,7 +155,7 @@ fn planes_of_a_gripper_are_named_and_repeated() {
     assert!((last - recorded).norm() < 0.1 * (recorded - start).norm());
 }
 
-/// In the channels: rows, levels and words are in the units of the recording, whatever the scale.
+/// Constraints in the channels: rows, levels and words are in the units of the recording, whatever the scale.
 #[test]
 fn channels_have_their_own_units() {
     let file = Path::new("../../docs/examples/toy.csv");
@@ -184,7 +184,7 @@ fn channels_have_their_own_units() {
     assert!(constraint_file(&[&plain[0]], &model.state, None).contains("normal = [["));
 }
 
-/// A recording that names the constraint of every sample: stretches are those of one name, and have it.
+/// In a recording with a label for every sample, stretches have one label each and keep it.
 #[test]
 fn named_constraints_keep_their_names() {
     let file = Path::new("../../docs/examples/toy.csv");
@@ -203,7 +203,7 @@ fn named_constraints_keep_their_names() {
     }
 }
 
-/// What cannot be is refused in a sentence.
+/// Invalid input is refused in one sentence.
 #[test]
 fn wrong_robots_are_refused() {
     let channels = ["q0", "q1", "q2", "q3"].map(str::to_owned);
@@ -214,8 +214,8 @@ fn wrong_robots_are_refused() {
     assert!(refused(&arm(&FOUR), &[], &channels[..3]).contains("q3"));
 }
 
-/// With 5 % of noise on velocities, positions tell the plane and where it switches: of movements in Euler steps, of those in time, and
-/// of those that keep to it less well.
+/// With 5 % of noise on velocities, positions determine the plane and its switch: for movements in Euler steps, accurately integrated
+/// ones, and ones that keep the plane less exactly.
 #[test]
 fn noisy_velocities_leave_planes_to_positions() {
     let urdf = arm(&FOUR);
@@ -230,7 +230,7 @@ fn noisy_velocities_leave_planes_to_positions() {
     }
 }
 
-/// Prints what is found on three robots.
+/// Prints the estimates for three robots.
 #[test]
 #[ignore = "a measurement of minutes; prints"]
 fn measured() {

@@ -1,4 +1,4 @@
-//! Goals that differ between episodes: found, learnt, asked for, and exported.
+//! Goals that differ between episodes: detected, learnt, required as input, and exported.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
@@ -64,7 +64,7 @@ fn goals_are_found_and_new_ones_reached() {
     }
     let far = model.in_context(&dvector![9.0, 0.0]).unwrap();
     assert!(!far.policy().is_supported(dvector![0.1, 0.1].as_view()));
-    // Without a choice the context follows the state.
+    // With an open context, the context follows the state.
     let [whole, there] = [model.clone(), model.in_context(&dvector![0.4, 0.1]).unwrap()];
     let action = whole.policy().action(dvector![0.3, 0.2, 0.4, 0.1].as_view());
     assert_eq!(action.rows(0, 2), there.policy().action(dvector![0.3, 0.2].as_view()));
@@ -129,7 +129,8 @@ fn a_model_without_its_context_is_not_followed() {
     assert_eq!(missing, ContextError::Missing { names });
 }
 
-/// Stored as version 2, which tells programs that know no context; what was chosen is not stored.
+/// Models with context are stored as version 2, so that programs without support for context refuse
+/// them; the fixed context is not stored.
 #[test]
 fn models_in_context_are_stored() {
     let text = model().to_json().unwrap();
@@ -138,7 +139,7 @@ fn models_in_context_are_stored() {
     assert_eq!(there.to_json().unwrap(), text);
 }
 
-/// Reads states with contexts, writes actions, the potential, and whether they are known.
+/// Reads states with contexts; writes actions, the potential, and whether the states are supported.
 const CALLER: &str = r#"
 #include <stdio.h>
 int policy(const double *x, const double *c, double *u, double *phi);
@@ -190,7 +191,7 @@ fn onnx_has_a_second_input() {
     assert!(has(b"Concat") && has(b"goal_x,goal_y"));
 }
 
-/// Twelve movements of `x` towards `goal`, with a channel of this name that is the goal.
+/// Twelve movements of `x` towards `goal`, with a channel of this name that contains the goal.
 fn recordings(name: &str, goals: impl Fn(usize, usize) -> f64) -> Recordings {
     let episode = |k: usize| Episode {
         name: k.to_string(),
@@ -221,13 +222,14 @@ fn only_what_is_called_a_context_is_found_to_be_one() {
     assert_eq!((found.context[0].low, found.context[0].high), (0.0, 11.0));
     assert_eq!(found.demonstrations.trajectories()[3].context(), &dvector![3.0]);
     assert_eq!(found.demonstrations.dim(), 1);
-    // An axis that every constraint blocked looks the same: it stays state, and a remark names the flag.
+    // An axis blocked by every constraint looks the same: it remains part of the state, and a remark
+    // names the flag.
     let kept = prepare(recordings("y", of_episode), &PrepareOptions::default()).unwrap();
     assert_eq!((kept.demonstrations.dim(), kept.context.len()), (2, 0));
     assert!(kept.findings.iter().any(|of| of.next.contains("--context y") && of.verdict == Verdict::Good));
     let given = prepare(recordings("y", of_episode), &with(ContextUse::Named(vec!["y".to_owned()]))).unwrap();
     assert_eq!(names(&given.context), ["y"]);
-    // What moves, or is the same everywhere, is no context, whatever it is called.
+    // A channel that moves, or is the same everywhere, is not context, whatever its name.
     for goals in [(|k, i| (k + i) as f64) as fn(usize, usize) -> f64, |_, _| 1.0] {
         assert!(prepare(recordings("goal", goals), &PrepareOptions::default()).unwrap().context.is_empty());
     }
@@ -256,27 +258,27 @@ fn a_context_that_is_none_is_refused() {
     assert!(refused("y", |k, i| (k + i) as f64).contains("episode '0'"));
 }
 
-/// Nothing constrained these movements, whatever their goals.
+/// These movements are unconstrained, although their goals differ.
 #[test]
 fn no_constraint_is_found_where_only_goals_differ() {
     let ran = run_in(folder(), "constraints goals.json goals.csv --json");
     assert_eq!(ran.code, Some(0), "{} {}", ran.out, ran.err);
 }
 
-/// How goals are recorded.
+/// Properties of the recordings of goals.
 #[derive(Debug, Clone, Copy, Default)]
 struct Recorded {
     /// Noise of velocities, as a share of their root mean square.
     speed_noise: f64,
     /// Noise of positions, as a share of their standard deviation.
     position_noise: f64,
-    /// Whether there are velocities.
+    /// Whether velocities are omitted.
     positions_only: bool,
     /// Unit of x, with its velocity and goal.
     unit: f64,
 }
 
-/// Movements towards goals as recordings, goals the last channels, and what x is to be multiplied with.
+/// Recordings of movements towards goals; the last channels are the goals.
 fn recorded(goals: &Goals, movements: usize, seed: u64, how: Recorded) -> Recordings {
     let shown = goals.movements(movements, seed);
     let mut rng = ChaCha8Rng::seed_from_u64(seed ^ 0x7e);
@@ -318,7 +320,7 @@ fn recorded(goals: &Goals, movements: usize, seed: u64, how: Recorded) -> Record
     Recordings { state, episodes: shown.trajectories().iter().enumerate().map(episode).collect(), findings: vec![] }
 }
 
-/// nUPE on movements towards goals that were not shown, without noise, in the units of the truth.
+/// nUPE on movements towards new goals, without noise, in the units of the truth.
 fn error_at_new_goals(model: &Model, goals: &Goals, unit: f64, seed: u64) -> f64 {
     let (mut learnt, mut truth) = (Vec::new(), Vec::new());
     let units = |x: &DVector<f64>, unit: f64| {
@@ -336,7 +338,7 @@ fn error_at_new_goals(model: &Model, goals: &Goals, unit: f64, seed: u64) -> f64
     metrics::nupe(&DMatrix::from_columns(&truth), &DMatrix::from_columns(&learnt)).unwrap()
 }
 
-/// What the program learns of goals from recordings with noise, and in units that are not right.
+/// The program's errors with goals, for recordings with noise and in wrong units.
 #[test]
 #[ignore = "a hundred fits: minutes of a release build; prints the table of docs/decisions/gp.md"]
 #[allow(clippy::print_stdout, reason = "it prints a table")]
@@ -379,7 +381,7 @@ fn new_goals_are_reached_through_noise_and_units() {
     }
 }
 
-/// Where a context is not chosen, or has no place, the error says so, with numbers to paste.
+/// If a context is missing or has no effect, the error says so, with numbers to paste.
 #[test]
 fn a_context_that_is_missing_or_of_no_use_is_named() {
     for (line, what) in [

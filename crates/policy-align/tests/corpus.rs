@@ -1,5 +1,5 @@
-//! What fuzzing found, and what people made of files: every input of `fuzz/corpus` again. The program's configuration is
-//! tested where it is read.
+//! Runs every input of `fuzz/corpus`, found by fuzzing or written by hand. The program's configuration is tested in its
+//! module.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 

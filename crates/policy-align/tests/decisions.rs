@@ -1,4 +1,4 @@
-//! Every decision names the flag that decides otherwise, and there is one.
+//! Every decision names the flag that overrides it, and the flag exists.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
@@ -22,7 +22,7 @@ fn decisions(recordings: &Recordings, prepare_options: &PrepareOptions, learner:
     fit(&prepared, &options, &mut Progress { cancelled: &cancelled, report: &mut |_| () }).unwrap().decisions
 }
 
-/// Recordings of which as much as can be has to be decided.
+/// Recordings that require as many decisions as possible.
 fn recordings() -> Vec<Recordings> {
     let plane = Plane { count: 8, roll_out: at_rate(50.0, 4.0), ..Plane::default() }.potential(&parabola(), 5);
     let case = |has| Case::of(&plane, 8, has);

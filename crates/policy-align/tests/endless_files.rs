@@ -1,4 +1,4 @@
-//! Devices and pipes given as files: refused by their name, and not waited for.
+//! Devices and pipes given as files are refused by name, without waiting for them.
 
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
@@ -12,7 +12,7 @@ use std::time::{Duration, Instant};
 
 use running::{Ran, command, folder};
 
-/// What came of a command line that must not take long.
+/// The result of a command line that must end quickly.
 fn soon(line: &str) -> Ran {
     let words = line.split_whitespace();
     let mut child = command(folder()).args(words).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
@@ -30,7 +30,7 @@ fn soon(line: &str) -> Ran {
 #[test]
 fn what_has_no_end_is_refused_by_its_name() {
     assert!(Command::new("mkfifo").arg(folder().join("waiting.json")).status().unwrap().success());
-    // Its bytes are nowhere on the disk.
+    // A sparse file, whose bytes are not on disk.
     File::create(folder().join("huge.json")).unwrap().set_len(1 << 42).unwrap();
     for file in ["/dev/zero", "waiting.json", "huge.json"] {
         let robot = format!("[[constraint]]\nrobot = \"{file}\"\nlink = \"hand\"\nplane = [0, 0, 1]\n");
@@ -45,7 +45,7 @@ fn what_has_no_end_is_refused_by_its_name() {
             format!("rollout toy.json --from 1.5,1 --limits {file}"),
             format!("evaluate toy.json {file} --as csv"),
         ] {
-            // A recording of any size is read.
+            // Recordings of any size are read.
             if file == "huge.json" && line.starts_with("evaluate") {
                 continue;
             }

@@ -1,4 +1,4 @@
-//! The examples of the documentation: where they come from, and that they do what is said of them.
+//! The examples of the documentation: how they are generated, and checks of the statements about them.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
@@ -12,10 +12,10 @@ use rand::SeedableRng as _;
 use rand_chacha::ChaCha8Rng;
 use running::{examples, run_in};
 
-/// Seconds between samples of the toy recording; its policy is faster by as much.
+/// Seconds between samples of the toy recording; its policy is faster by this factor.
 const TIME_STEP: f64 = 0.05;
 
-/// The toy system of 40 movements down a parabola, each under constraints that change on the way, to a thousandth of a
+/// The toy system: 40 movements down a parabola, each under changing constraints, rounded to a thousandth of a
 /// millimetre.
 fn toy() -> String {
     let recordings = ToySystem::default().record(&mut ChaCha8Rng::seed_from_u64(5)).unwrap();
@@ -30,10 +30,10 @@ fn toy() -> String {
     text
 }
 
-/// Rails of three movements each, all in one bowl, with the rail's name.
+/// Names of the rails, with three movements each, all in one bowl.
 const RAILS: [&str; 4] = ["north", "east", "slope", "ramp"];
 
-/// π = −2 x per second along rails that do not change on the way, in closed form, each with its name.
+/// π = −2 x per second along constant rails, in closed form, with the rails' names.
 fn rails() -> String {
     let mut text = "episode,t,x,y,vx,vy,constraint\n".to_owned();
     for episode in 0..3 * RAILS.len() {
@@ -53,14 +53,14 @@ fn rails() -> String {
     text
 }
 
-/// Towards a goal that every movement has for itself, and away from a hill that stays where it is, per second.
+/// Velocity towards the movement's goal and away from a fixed hill, per second.
 fn to_goal(x: [f64; 2], goal: [f64; 2]) -> [f64; 2] {
     let from = [x[0] - 0.2, x[1] + 0.3];
     let hill = 0.8 / 0.7 * (-(from[0] * from[0] + from[1] * from[1]) / 0.98).exp();
     [0, 1].map(|axis| goal[axis] - x[axis] + from[axis] * hill)
 }
 
-/// 32 movements along rails that change half way, each to its own goal, in fine Euler steps.
+/// 32 movements along rails that change half way, each to a separate goal, in fine Euler steps.
 fn goals() -> String {
     let mut text = "episode,t,x,y,vx,vy,goal_x,goal_y\n".to_owned();
     for episode in 0..32 {
@@ -104,11 +104,11 @@ fn write_the_recordings() {
     std::fs::write(examples().join("goals.csv"), goals()).unwrap();
 }
 
-/// The page that shows a session with the program.
+/// The page with a session of the program.
 const PAGE: &str = "../your-own-data.md";
 
-/// The page with the outputs of its console blocks written anew, and every command with what the page and the program
-/// say. A block is one command and its output.
+/// The page with regenerated outputs of its console blocks, and every command with the outputs of the page and of the
+/// program. A block is one command and its output.
 fn replayed(page: &str, run: &dyn Fn(&str) -> String) -> (String, Vec<[String; 3]>) {
     let (mut fresh, mut sessions) = (String::new(), Vec::new());
     let mut rest = page;
@@ -124,8 +124,8 @@ fn replayed(page: &str, run: &dyn Fn(&str) -> String) -> (String, Vec<[String; 3
     (fresh + rest, sessions)
 }
 
-/// Words alike, numbers within a hundredth, or both as good as 0, and any time of day: machines round differently, and
-/// sizes of files hang on it.
+/// Whether outputs agree: same words, numbers within a hundredth or both nearly 0, any time of day. Machines round
+/// differently, which also affects file sizes.
 fn alike(found: &str, expected: &str) -> bool {
     let words = |text: &str| text.split_whitespace().map(ToOwned::to_owned).collect::<Vec<_>>();
     let (found, expected) = (words(found), words(expected));
@@ -138,7 +138,7 @@ fn alike(found: &str, expected: &str) -> bool {
     found.len() == expected.len() && found.iter().zip(&expected).all(|(a, b)| same(a, b))
 }
 
-/// `UPDATE_SESSION=1 cargo test -p policy-align --test examples` writes the outputs of the page anew.
+/// `UPDATE_SESSION=1 cargo test -p policy-align --test examples` regenerates the outputs of the page.
 #[test]
 fn the_session_of_the_page_happens() {
     let page = std::fs::read_to_string(examples().join(PAGE)).unwrap();

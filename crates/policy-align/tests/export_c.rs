@@ -1,4 +1,4 @@
-//! The exported C file does what the model does.
+//! The exported C file agrees with the model.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 #![allow(clippy::print_stderr, reason = "what is not tried is said")]
@@ -14,7 +14,7 @@ use motion::{LearntPolicy as _, Policy as _};
 use nalgebra::DMatrix;
 use policy_align::{CSource, ExportError, Finding, Model, Precision, Verdict};
 
-/// Reads states, writes action, potential and whether something was learnt, all as bits.
+/// Reads states; writes action, potential and support, all as bits.
 const CALLER: &str = r#"
 #include <stdio.h>
 #include <stdint.h>
@@ -48,7 +48,7 @@ fn compiler() -> Option<&'static str> {
     found.then_some("cc")
 }
 
-/// What the compiled file answers at states (2, N).
+/// Results of the compiled file at states (2, N).
 fn answers(source: &str, number: &str, states: &DMatrix<f64>, folder: &Path) -> Vec<Answer> {
     let path = |name: &str| folder.join(name);
     std::fs::write(path("act.c"), source).unwrap();
@@ -76,7 +76,7 @@ fn answers(source: &str, number: &str, states: &DMatrix<f64>, folder: &Path) -> 
     lines.lines().map(answer).collect()
 }
 
-/// Compares at 10,000 states: the largest difference over the largest number.
+/// Compares at 10,000 states: the largest difference relative to the largest number.
 fn compare(name: &str, model: &Model, precision: Precision, tolerance: f64) {
     let folder = tempfile::tempdir().unwrap();
     let source = CSource { name: "act".to_owned(), precision }.of(model).unwrap();
@@ -106,7 +106,7 @@ fn compare(name: &str, model: &Model, precision: Precision, tolerance: f64) {
             }
         }
         if at < 500 {
-            // What a Gaussian process knows takes long to find out, and is found in another way in C.
+            // The support of a Gaussian process is slow to compute, and C uses another criterion.
             let expected = policy.is_supported(state);
             known += usize::from(expected);
             wrongly += usize::from(answer.known && !expected);
@@ -121,14 +121,14 @@ fn compare(name: &str, model: &Model, precision: Precision, tolerance: f64) {
         relative[1]
     );
     assert!(relative[0] <= tolerance && relative[1] <= tolerance, "{name}: {relative:?}");
-    // What the direct GP knows of constrained movements is in patches, which no distance tells.
+    // The direct GP supports constrained movements in patches, which the criterion by distance does not describe.
     assert!(
         wrongly <= 25 && (missed <= 50 || name == "direct"),
         "{name}: of {known} known {wrongly} wrongly, {missed} missed"
     );
 }
 
-/// The same model in other units, one of them another unit than the other's.
+/// The same model in other units, with another factor for each channel.
 fn rescaled(mut model: Model) -> Model {
     for (channel, scale) in model.state.iter_mut().zip([0.5, 2.0]) {
         channel.scale = scale;
@@ -169,7 +169,7 @@ fn names_of_functions_are_names_and_comments_stay_comments() {
     }
 }
 
-/// Far outside, where a trend still leads somewhere, the file, the program and Rust agree that nothing is known.
+/// Far outside, where a trend still extrapolates, the file, the program and Rust agree that there is no support.
 #[test]
 fn there_is_no_action_outside_the_data() {
     let folder = tempfile::tempdir().unwrap();
@@ -199,13 +199,13 @@ fn what_is_not_finite_is_not_known() {
     }
     let folder = tempfile::tempdir().unwrap();
     let demonstrations = toy(12, 20);
-    // Constrained movements tell the direct GP little: it need not know any state.
+    // The direct GP learns little from constrained movements and need not support any state.
     let models =
         [(slope(&demonstrations), true), (direct(&demonstrations), false), (policy_align(&demonstrations), true)];
     for (model, knows) in models {
         let source = CSource { name: "act".to_owned(), ..CSource::default() }.of(&model).unwrap();
         let states = DMatrix::from_row_slice(2, 3, &[f64::NAN, 0.1, 0.2, 0.0, f64::INFINITY, 0.3]);
-        // scanf does not read Rust's "NaN" but C's "nan", nor "inf" but it does.
+        // scanf reads C's "nan" but not Rust's "NaN"; it reads "inf".
         let answers = answers(&source, "double", &states, folder.path());
         for answer in &answers[..2] {
             assert!(!answer.known && answer.action == [0.0, 0.0] && answer.potential.is_nan());

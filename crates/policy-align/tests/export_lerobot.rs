@@ -1,4 +1,4 @@
-//! The folder for LeRobot: its tensor is the model file, and its features are the model's. What LeRobot does with it is tested in
+//! The folder for LeRobot: its tensor is the model file, and its features are the model's. Its use by LeRobot is tested in
 //! `crates/policy-align-py/tests/test_lerobot.py`.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
@@ -9,7 +9,7 @@ use models::{one_of_each, toy};
 use policy_align::{ExportError, Model, to_lerobot};
 use serde_json::{Value, json};
 
-/// A file of the folder.
+/// The contents of a file in the folder.
 fn file(model: &Model, name: &str) -> Vec<u8> {
     to_lerobot(model).unwrap().into_iter().find(|(found, _)| *found == name).unwrap().1
 }

@@ -1,4 +1,4 @@
-//! The exported ONNX file is well formed, and onnxruntime does with it what the model does.
+//! The exported ONNX file is well-formed, and onnxruntime's results agree with the model's.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 #![allow(clippy::print_stderr, reason = "what is not tried is said")]
@@ -12,13 +12,13 @@ use models::{direct, free, one_of_each, states, toy};
 use motion::{LearntPolicy as _, Policy as _};
 use policy_align::{Model, to_onnx};
 
-/// A field of a message: its number, and its value.
+/// Value of a message's field.
 enum Value<'a> {
     Number(u64),
     Bytes(&'a [u8]),
 }
 
-/// The fields of a message, in order.
+/// The fields of a message with their numbers, in order.
 fn fields(mut bytes: &[u8]) -> Vec<(u64, Value<'_>)> {
     fn varint(bytes: &mut &[u8]) -> u64 {
         let (mut value, mut shift) = (0, 0);
@@ -111,7 +111,7 @@ phi = found.get("phi", np.full(len(x), np.nan))
 np.concatenate([found["u"], phi[:, None], found["support"][:, None].astype(float)], axis=1).tofile(sys.argv[3])
 "#;
 
-/// A Python that has onnxruntime: `PYTHON`, or the usual one.
+/// A Python with onnxruntime: `PYTHON`, or the default one.
 fn python() -> Option<String> {
     let python = std::env::var("PYTHON").unwrap_or_else(|_| "python3".to_owned());
     let found = Command::new(&python).args(["-c", "import onnxruntime, numpy"]).output();
@@ -169,6 +169,6 @@ fn compare(python: &str, name: &str, model: &Model) {
         potential_error / highest
     );
     assert!(error <= 1e-12 * largest && potential_error <= 1e-12 * highest.max(f64::MIN_POSITIVE), "{name}");
-    // What the direct GP knows of constrained movements is in patches, which no distance tells.
+    // The direct GP supports constrained movements in patches, which the criterion by distance does not describe.
     assert!(wrongly <= 50 || name == "direct", "{name}: {known} {wrongly}");
 }

@@ -1,4 +1,4 @@
-//! A fit keeps its promises whatever it learns from: bits, units, options, and how it is stopped.
+//! Invariants of a fit for any recordings: bits, units, options, and cancellation.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
@@ -37,7 +37,7 @@ fn small(learner: LearnerChoice) -> FitOptions {
 const LEARNERS: [LearnerChoice; 4] =
     [LearnerChoice::Auto, LearnerChoice::PolicyAlign, LearnerChoice::Slope, LearnerChoice::Direct];
 
-/// Stored as text: policy, numbers, words and all.
+/// The model as text: policy, numbers and words.
 fn text(fit: &Model) -> String {
     serde_json::to_string(&(&fit.learnt, &fit.decisions, &fit.trust)).unwrap()
 }
@@ -61,7 +61,7 @@ fn the_same_seed_gives_the_same_bits_at_any_number_of_threads() {
     }
 }
 
-/// Millimetres, or one channel in other units with --scale undoing it, give the policy of metres.
+/// Millimetres, or one channel in other units compensated by --scale, give the same policy as metres.
 #[test]
 fn units_do_not_matter() {
     let metres = prepared(&few());
@@ -84,7 +84,7 @@ fn units_do_not_matter() {
     }
 }
 
-/// Without --scale, the constraints tell that y is in millimetres.
+/// Without --scale, the constraints determine that y is in millimetres.
 #[test]
 fn units_are_learnt() {
     let mixed = few().in_units(&[1.0, 1000.0]);
@@ -94,13 +94,13 @@ fn units_are_learnt() {
     assert_eq!(model.scales().as_slice(), [1.0, 0.001]);
     assert!(mixed.error(model.learnt.policy(), &model.scales()) < 1e-3);
     assert_eq!(model.trust.verdict, Verdict::Good, "{:?}", model.trust.findings);
-    // What the user chooses stays.
+    // The user's choice is kept.
     let options = PrepareOptions { scale: vec![("y".to_owned(), 1.0)], ..PrepareOptions::default() };
     let chosen = prepare(&mixed.recordings, &options).unwrap();
     assert_eq!(fit(&chosen, &small(LearnerChoice::Auto)).unwrap().state[1].scale, 1.0);
 }
 
-/// What is left out is predicted in the unit that the others tell.
+/// Left-out movements are predicted in the unit determined by the others.
 #[test]
 fn units_are_learnt_without_each_constraint() {
     let movements = Plane { count: 24, ..Plane::default() }.potential(&parabola(), 5);
@@ -135,7 +135,7 @@ fn decisions_say_what_was_done() {
     assert_eq!(value(&given, "init_d"), "7.5");
     assert!(value(&given, "bandwidth").starts_with("medium"));
     assert_eq!(value(&given, "integration"), "velocity");
-    // Told to take movements for free that are not: the report keeps its own reading.
+    // If the user declares constrained movements free, the report keeps its own reading.
     let fit = fit(&prepared, &free).unwrap();
     assert_eq!(fit.trust.numbers.reading, Hypothesis::Constrained);
     assert_ne!(fit.trust.verdict, Verdict::Good);
@@ -172,7 +172,7 @@ fn options_out_of_range() {
     }
 }
 
-/// Halves of one short noisy movement have too few rows to learn from: nothing shows its error.
+/// Halves of one short noisy movement have too few rows to learn from, so its error cannot be estimated.
 #[test]
 fn one_noisy_movement() {
     let roll_out = demo_gen::RollOut { n_samples: 200, time_step: 0.2, ..demo_gen::RollOut::default() };
@@ -188,8 +188,8 @@ fn one_noisy_movement() {
     assert!(numbers.expected_error >= 1.0, "{numbers:?}");
 }
 
-/// Parts of one movement, or of two, do not show how wrong the policy is elsewhere; what both halves make of it does. A limit cycle that is
-/// passed many times shows itself in each half.
+/// Parts of one or two movements do not show the policy's error elsewhere; the disagreement of their halves does. A limit cycle that is
+/// traversed many times appears in each half.
 #[test]
 fn one_or_two_movements_expect_what_their_halves_show() {
     for count in [1, 2] {

@@ -1,4 +1,4 @@
-//! Models that earlier versions wrote are read for ever, and answer what they answered.
+//! Models written by earlier versions can still be read, with the same predictions.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
@@ -35,7 +35,7 @@ fn every_golden_model_is_read_and_acts_as_it_did() {
         let expected: Vec<Vec<f64>> = serde_json::from_value(expected["actions"].clone()).unwrap();
         let found = actions(&model, &states(expected.len()));
         for (found, expected) in found.iter().flatten().zip(expected.iter().flatten()) {
-            // Processors differ in their last bits, in whether products are fused with sums.
+            // Processors differ in the last bits, depending on whether products and sums are fused.
             assert!(
                 (found - expected).abs() <= 1e-11 * (1.0 + expected.abs()),
                 "{} {found} {expected}",

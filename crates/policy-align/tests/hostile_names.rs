@@ -1,4 +1,5 @@
-//! Names come with recordings and models of others: none of them moves the cursor of a terminal or becomes a command.
+//! Names come from other people's recordings and models: they must neither move a terminal's cursor nor become
+//! commands.
 
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
@@ -15,7 +16,7 @@ use running::{Ran, command, examples};
 use serde_json::Value;
 use text::is_hidden;
 
-/// Clears the screen, rings the bell, turns the direction of writing.
+/// Clears the screen, rings the bell, reverses the writing direction.
 const HOSTILE: &str = "\u{1b}[2J\u{7}\u{202e}\u{9b}x";
 const FILE: &str = "a;touch pwned $(touch pwned) 'x";
 
@@ -118,7 +119,7 @@ fn drawings_pages_and_comments_show_every_character() {
     }
 }
 
-/// What is proposed can be pasted: it does what it says, and nothing else.
+/// Suggested commands can be pasted: they do what they say, and nothing else.
 #[test]
 fn a_file_name_is_no_command() {
     let (csv, json) = (format!("{FILE}.csv"), format!("{FILE}.json"));
@@ -141,7 +142,7 @@ fn a_file_name_is_no_command() {
         let ran = said(words);
         let next = ran.out.lines().find_map(|line| line.strip_prefix("Next:  "));
         let next = next.unwrap_or_else(|| panic!("{words:?}: {}{}", ran.out, ran.err));
-        // Another shell reads it as it is meant, whether or not the program that it names is there.
+        // Another shell reads the line as intended, whether or not the program that it names exists.
         let said = Command::new("sh").args(["-c", next]).current_dir(folder).env("PATH", &path).output().unwrap();
         assert!(!folder.join("pwned").exists(), "{next}");
         if next.starts_with("policy-align") && !next.starts_with("policy-align fit") {
@@ -150,7 +151,7 @@ fn a_file_name_is_no_command() {
     }
 }
 
-/// Data, too, where they are shown on a terminal.
+/// The same holds for data shown on a terminal.
 #[test]
 fn a_terminal_shows_every_character_of_data() {
     if Command::new("script").arg("--version").output().is_err() {

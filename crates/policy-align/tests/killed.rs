@@ -1,4 +1,4 @@
-//! Whoever ends the program early finds the old file or the new one, never half of one.
+//! If the program is killed, the old file or the new one exists, never half of one.
 
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
@@ -16,7 +16,7 @@ use std::time::{Duration, Instant};
 use policy_align::{Model, write_whole};
 use running::{command, examples, folder};
 
-/// Of the file that the child writes over and over.
+/// Variable with the path of the file that the child repeatedly overwrites.
 const PLACE: &str = "POLICY_ALIGN_KILLED";
 const BYTES: usize = 3_000_000;
 
@@ -50,7 +50,7 @@ fn a_killed_writer_leaves_a_whole_file() {
             .stdout(Stdio::null())
             .spawn()
             .unwrap();
-        // Not before it writes, and then at any moment.
+        // Kills it at any moment after it has begun to write.
         let begun = Instant::now();
         while !names(place.path()).iter().any(|name| Path::new(name).extension().is_some_and(|end| end == "part")) {
             assert!(begun.elapsed() < Duration::from_secs(60), "the child writes nothing");
@@ -68,7 +68,7 @@ fn a_killed_writer_leaves_a_whole_file() {
     assert!(drafts > 0, "never killed while writing: this test saw nothing");
 }
 
-/// The program on its way to write `toy.json`, once it has begun to learn.
+/// The program while it learns `toy.json`.
 fn fitting(place: &Path, rows: &str) -> Child {
     fs::copy(examples().join("toy.csv"), place.join("toy.csv")).unwrap();
     let arguments = ["fit", "toy.csv", "-o", "toy.json", "--no-report", "--max-rows", rows];
@@ -89,7 +89,7 @@ fn a_killed_fit_leaves_the_old_model_or_the_new() {
         let path = place.path().join("toy.json");
         fs::write(&path, &old).unwrap();
         let mut child = fitting(place.path(), "60");
-        // The last ones when it writes, or thereabouts.
+        // The last rounds kill it about when it writes.
         sleep(duration.mul_f64(0.7 + 0.07 * f64::from(part)));
         child.kill().unwrap();
         child.wait().unwrap();
@@ -103,7 +103,7 @@ fn interrupt(child: &Child) {
 
 #[test]
 fn an_interrupted_fit_leaves_the_old_model() {
-    // On a busy machine the first may come before the program listens.
+    // On a busy machine the first signal may arrive before the program handles it.
     let codes = [300, 700, 1500, 3000].map(|milliseconds| {
         let place = tempfile::tempdir().unwrap();
         fs::write(place.path().join("toy.json"), "old").unwrap();

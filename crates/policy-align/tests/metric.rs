@@ -1,4 +1,4 @@
-//! A robot's mass matrix as the metric of constraints: tried with its URDF, taken where movements bear it out.
+//! A robot's mass matrix as the metric of constraints: tried if a URDF is given, used if the movements support it.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
@@ -10,7 +10,7 @@ use policy_align::{FitError, FitOptions, Model, PrepareOptions, Progress, Verdic
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-/// Two rods of a metre with a kilogram at the end of each.
+/// Two rods of one metre with one kilogram at the end of each.
 fn urdf(mass: &str) -> String {
     format!(
         r#"<robot name="arm"><link name="base"/>
@@ -31,7 +31,7 @@ fn policy(q: &Vector2<f64>) -> Vector2<f64> {
     Vector2::new(-q.x.sin() - 0.3 * (q.x - q.y).sin(), -0.5 * q.y + 0.3 * (q.x - q.y).sin())
 }
 
-/// Movements along a line each, at right angles in `metric`.
+/// Movements along one line each, under constraints that are orthogonal in `metric`.
 fn recordings(metric: impl Fn(&Vector2<f64>) -> Matrix2<f64>) -> Recordings {
     let mut rng = ChaCha8Rng::seed_from_u64(5);
     let episodes = (0..30).map(|number| {
@@ -103,7 +103,7 @@ fn robots_that_cannot_be_used_are_refused() {
         Ok(_) => panic!("a robot was taken"),
         Err(error) => error.to_string(),
     };
-    // With masses or without, its last link may keep to something, unless a joint that was not recorded moves it.
+    // With or without masses, constraints on its last link are tried, unless an unrecorded joint moves it.
     let wrist = r#"<link name="hand"/><joint name="wrist" type="continuous"><parent link="lower"/><child link="hand"/></joint></robot>"#;
     assert!(reason(urdf("0").replace("</robot>", wrist)).ends_with("; give each link <inertial>"));
     let [with, without] = [Some(urdf("0")), None].map(|robot| learnt(&oblique, robot).unwrap().to_json().unwrap());

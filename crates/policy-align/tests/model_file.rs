@@ -1,4 +1,4 @@
-//! Model files: what is written is read to the last bit, and nothing else is read.
+//! Model files are read back to the last bit; invalid files are refused.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
@@ -16,7 +16,7 @@ use rand::SeedableRng as _;
 use rand_chacha::ChaCha8Rng;
 use serde_json::{Value, json};
 
-/// Everything that a model answers at a state.
+/// All results of a model at a state.
 fn answers(model: &Model, states: &DMatrix<f64>) -> Vec<u64> {
     let policy = model.policy();
     let mut bits = Vec::new();
@@ -45,7 +45,7 @@ fn a_stored_model_answers_the_same_bits_at_a_thousand_states() {
     }
 }
 
-/// The text with a member changed, and a checksum that fits it.
+/// Reads the text with a changed member and a matching checksum.
 fn with(text: &str, pointer: &str, change: impl FnOnce(&mut Value)) -> Result<Model, ModelError> {
     let mut value: Value = serde_json::from_str(text).unwrap();
     change(value.pointer_mut(pointer).unwrap());
@@ -154,10 +154,10 @@ fn no_flipped_bit_is_another_model() {
     }
 }
 
-/// What JSON is made of.
+/// Characters of JSON's syntax.
 const MARKS: &[u8] = b"0123456789,:[]{}\"-.e";
 
-/// Damages a text in a few places.
+/// Damages a text at a few positions.
 fn damaged(text: &str, random: &mut ChaCha8Rng) -> Vec<u8> {
     let mut bytes = text.as_bytes().to_vec();
     for _ in 0..random.random_range(1..5) {
@@ -186,7 +186,7 @@ fn damaged(text: &str, random: &mut ChaCha8Rng) -> Vec<u8> {
     bytes
 }
 
-/// `POLICY_ALIGN_FUZZ=1000000` tries so many of every learner.
+/// `POLICY_ALIGN_FUZZ=1000000` tries this many damaged texts for every learner.
 #[test]
 fn damaged_models_are_refused_in_one_line_at_once() {
     let count: u64 = std::env::var("POLICY_ALIGN_FUZZ").ok().map_or(300, |count| count.parse().unwrap());
@@ -195,7 +195,7 @@ fn damaged_models_are_refused_in_one_line_at_once() {
         let mut slowest = (Duration::ZERO, 0);
         for seed in 0..count {
             let bytes = damaged(&text, &mut ChaCha8Rng::seed_from_u64(seed));
-            // Not time on the wall, which is other programs', too.
+            // Wall-clock time would include other programs.
             let start = ThreadTime::now();
             match Model::from_json(&bytes) {
                 Ok(read) => assert_eq!(read.to_json().unwrap(), text, "{name} seed {seed}"),
@@ -239,7 +239,7 @@ proptest! {
             prop_assert_eq!(action[0], expected[0] / scale[0]);
             prop_assert_eq!(action[1], expected[1] / scale[1]);
 
-            // The potential descends by its gradient, which is the policy's where the scales are one.
+            // The potential's negative gradient is the policy if all scales are one.
             let policy = model.policy();
             let potential = policy.potential().unwrap();
             let gradient = potential.gradient(state.as_view());

@@ -1,4 +1,4 @@
-//! What the program proposes as next command, pasted: it works, and reads the files as the command before did.
+//! The suggested next commands, when pasted, work and read the files as the previous command did.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
@@ -10,7 +10,7 @@ use std::process::Command;
 use running::{Ran, examples, run_in};
 use serde_json::Value;
 
-/// The recordings among the examples and among the samples of the readers' tests.
+/// The recordings among the examples and the samples of the readers' tests.
 fn samples() -> Vec<PathBuf> {
     let readers = examples().join("../../crates/demo-io/tests/samples");
     let files = [examples(), readers].map(|folder| std::fs::read_dir(folder).unwrap());
@@ -32,7 +32,7 @@ fn pasted(folder: &Path, line: &str) -> Ran {
     Command::new("sh").args(["-c", line]).current_dir(folder).env("PATH", path).output().unwrap().into()
 }
 
-/// Runs a line and each that the one before proposes, if it is of this program; what was run.
+/// Runs a line, and then each suggested line of this program; returns the lines.
 fn followed(folder: &Path, line: &str) -> Vec<String> {
     let mut lines = vec![format!("policy-align {line}")];
     loop {
@@ -46,7 +46,7 @@ fn followed(folder: &Path, line: &str) -> Vec<String> {
     }
 }
 
-/// Channels, context, episodes and samples that `check` finds.
+/// The channels, context, episodes and samples found by `check`.
 fn read_as(folder: &Path, line: &str) -> Value {
     let ran = pasted(folder, &format!("policy-align check --json {line}"));
     let document: Value = serde_json::from_str(&ran.out).unwrap_or_else(|_| panic!("{line}: {}", ran.err));
@@ -85,7 +85,7 @@ fn every_sample_leads_from_check_to_a_path() {
     }
 }
 
-/// What is written reads as what was read.
+/// Written files read like the originals.
 #[test]
 fn every_sample_reads_the_same_when_converted() {
     for sample in samples() {
@@ -99,7 +99,7 @@ fn every_sample_reads_the_same_when_converted() {
     }
 }
 
-/// Rows of a spiral, an episode after the other, with what they begin and end with.
+/// Rows of spirals, one episode after the other, in the given format.
 fn spirals(header: &str, row: impl Fn(usize, usize, [f64; 2]) -> String) -> String {
     let mut text = header.to_owned();
     for episode in 0..10 {
@@ -111,7 +111,7 @@ fn spirals(header: &str, row: impl Fn(usize, usize, [f64; 2]) -> String) -> Stri
     text
 }
 
-/// Files that cannot be read without flags, or read otherwise.
+/// Files that cannot be read, or are read differently, without flags.
 #[test]
 fn flags_stay() {
     let folder = tempfile::tempdir().unwrap();
@@ -146,7 +146,7 @@ fn flags_stay() {
     }
 }
 
-/// Where only the roles of columns are wrong, the next command gives them others.
+/// If only the roles of columns are wrong, the next command corrects them.
 #[test]
 fn columns_in_wrong_roles_lead_to_the_right_ones() {
     let folder = tempfile::tempdir().unwrap();
@@ -176,7 +176,7 @@ fn columns_in_wrong_roles_lead_to_the_right_ones() {
     }
 }
 
-/// A plot proposes a roll-out that starts within the data, with its own flags.
+/// A plot suggests a roll-out with its own flags that starts within the data.
 #[test]
 fn a_plot_proposes_a_roll_out_that_works() {
     let (folder, _) = folder_with(&examples().join("goals.csv"));
@@ -199,7 +199,7 @@ fn a_plot_proposes_a_roll_out_that_works() {
     }
 }
 
-/// A model and its report beside the recordings are no recordings.
+/// A model and its report next to the recordings are not read as recordings.
 #[test]
 fn a_folder_can_be_learnt_from_again() {
     let (folder, _) = folder_with(&examples().join("toy.csv"));

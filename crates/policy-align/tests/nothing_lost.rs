@@ -1,4 +1,4 @@
-//! What a reader or the preparation found reaches the model, the trust page, its JSON, `check` and the terminal.
+//! Findings of readers and of `prepare` reach the model, the trust page, its JSON, `check` and the terminal.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
@@ -22,7 +22,7 @@ fn json(path: &Path) -> Value {
     serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap()
 }
 
-/// toy.csv with an episode of a single sample, and episode 3 once more under another name.
+/// toy.csv with an additional episode of a single sample, and a copy of episode 3 under another name.
 fn odd() -> String {
     let mut text = fs::read_to_string(examples().join("toy.csv")).unwrap();
     let copy: Vec<String> =
@@ -57,7 +57,7 @@ fn episodes_that_are_left_out_are_named_everywhere() {
     let checked: Value = serde_json::from_str(&run_in(folder.path(), "check odd.csv --json").out).unwrap();
     assert_eq!(checked["left_out"], odd["data"]["left_out"]);
     assert!(checked["findings"].to_string().contains("exact copies"));
-    // A converter keeps what it is given.
+    // Conversion keeps all episodes.
     run_in(folder.path(), "convert odd.csv -o again.csv");
     assert!(fs::read_to_string(folder.path().join("again.csv")).unwrap().contains("copy,"));
     assert!(fs::read_to_string(folder.path().join("again.csv")).unwrap().contains("single,"));
@@ -99,7 +99,7 @@ fn samples_at_rest_that_are_removed_are_counted() {
     assert!(findings.contains("of 360 samples, in which"), "{findings}");
 }
 
-/// A copy of a held-out episode would be learnt from.
+/// A copy of a held-out episode must not be in the training set.
 #[test]
 fn copies_of_held_out_episodes_are_not_learnt_from() {
     let folder = folder("odd.csv", odd());
@@ -111,7 +111,7 @@ fn copies_of_held_out_episodes_are_not_learnt_from() {
     assert!(findings.contains("copies of held-out episodes were left out: copy"), "{findings}");
 }
 
-/// Recordings in another unit lie outside the data, whatever a linear policy says there.
+/// Recordings in another unit lie outside the data, whatever a linear policy predicts there.
 #[test]
 fn recordings_far_outside_the_data_are_not_supported() {
     let folder = folder("far.csv", far());
@@ -148,7 +148,8 @@ fn half_precision() -> Vec<u8> {
         for i in 0..samples {
             for axis in 0..2 {
                 let value = 1.0 + 0.9 * (-0.1 * i as f32).exp() * ((k * 2 + axis) as f32).sin();
-                // Values lie in [0.0625, 2): the exponent, less 127 and plus 15, fits; the mantissa is cut to ten bits.
+                // Values lie in [0.0625, 2): the exponent minus 127 plus 15 fits; the mantissa is truncated to ten
+                // bits.
                 let bits = value.to_bits();
                 let half = (((((bits >> 23) & 0xff) - 112) << 10) | ((bits >> 13) & 0x3ff)) as u16;
                 bytes.extend(half.to_le_bytes());
@@ -174,7 +175,7 @@ fn what_a_reader_finds_is_told_once_and_stays_with_the_model() {
         let folder = folder(file, content);
         let ran = run_in(folder.path(), &format!("fit {file} {flags} -o model.json"));
         assert!(matches!(ran.code, Some(0 | 1)), "{file}: {}", ran.err);
-        // Folded lines are one sentence.
+        // Wrapped lines are one sentence.
         let flat = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
         let count = |text: &str| flat(text).matches(words).count();
         assert_eq!(count(&ran.err) + count(&ran.out), 1, "{file}:\n{}\n{}", ran.err, ran.out);

@@ -1,4 +1,4 @@
-//! The pages that the program writes, in a real browser.
+//! Shows the program's pages in a real browser.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
@@ -15,10 +15,10 @@ use running::{folder, run};
 /// Widths of windows, CSS pixels: a small phone, a phone, a laptop.
 const WIDTHS: [u32; 3] = [320, 390, 1280];
 
-/// Names as people give them to files and channels.
+/// A typical long name of a file or channel.
 const LONG: &str = "left_shoulder_pitch_joint_position_measured_in_radians";
 
-/// The pages of a model and of a check, of a file with short names and of one with long names.
+/// The pages of a model and of `check`, for a file with short names and one with long names.
 fn pages() -> Vec<PathBuf> {
     let text = std::fs::read_to_string(folder().join("toy.csv")).unwrap();
     let long = text.replace("episode,t,x,y,vx,vy", &format!("episode,t,{LONG},y,v_{LONG},vy"));
@@ -45,7 +45,7 @@ fn no_page_is_wider_than_its_window_and_all_of_it_is_right() {
             page.resize(width, 800);
             let needed = page.width_needed();
             assert!(needed <= width, "{}: {needed} of {width} pixels", file.display());
-            // What hides what is too wide would pass, too.
+            // Hiding overflowing parts would pass the check above, so clipped elements are refused.
             let cut: Vec<String> = page.evaluate(&format!(
                 "[...document.querySelectorAll('main :is(h1, h2, p, li, td, th, figcaption)')]
                     .filter(element => element.getClientRects().length && !element.closest('thead'))
@@ -95,18 +95,18 @@ fn the_picture_of_a_policy_says_what_it_shows() {
     ] {
         assert!(svg.contains(&format!(">{words}</text>")), "no {words}");
     }
-    // Round values of the potential, on white or black that lets them be read.
+    // Round values of the potential, on a white or black background that makes them readable.
     assert!(svg.matches("font-size=\"10\"").count() >= 3, "no values on the lines");
     assert!(svg.contains("prefers-color-scheme:dark"));
 }
 
-/// Numbers between 0 and 1 that look random.
+/// Deterministic numbers between 0 and 1 that look random.
 fn noise(at: usize) -> f64 {
     ((at as f64 + 2.0) * 12.9898).sin().mul_add(43_758.545_3, 0.0).rem_euclid(1.0)
 }
 
-/// The page of movements to different goals in three channels, which no policy of the state makes, and one of a good policy in
-/// three channels; made once.
+/// The page of movements to different goals in three channels, which no policy of the state explains, and one of a good policy
+/// in three channels; made once.
 fn pages_of_three_channels() -> [PathBuf; 2] {
     static PAGES: OnceLock<[PathBuf; 2]> = OnceLock::new();
     PAGES.get_or_init(made_of_three_channels).clone()
@@ -136,7 +136,7 @@ fn a_wide_window_has_two_columns_and_a_phone_one() {
     let [wrong, good] = pages_of_three_channels();
     for file in [wrong, good, folder().join("toy.trust.html")] {
         let Some(mut page) = Page::open(&file) else { return };
-        // All at one time, once the window has its size.
+        // All in one call, after the window has been resized.
         let sides = |page: &mut Page, width: u32| -> [[f64; 3]; 5] {
             page.resize(width, 900);
             page.wait_until(&format!("innerWidth === {width}"));
@@ -184,7 +184,7 @@ fn numbers_that_are_not_good_have_a_sign_and_a_colour() {
         );
         assert_ne!(colors[0], colors[1], "{scheme}");
     }
-    // PolicyAlign's policy has another bound.
+    // PolicyAlign's policy has a different threshold.
     let ran = run("fit toy.csv --learner policy-align -o aligned.json");
     assert!(ran.out.contains("good: all checks passed"), "{}", ran.out);
     for good in [good, folder().join("toy.trust.html"), folder().join("aligned.trust.html")] {
@@ -203,7 +203,7 @@ fn numbers_that_are_not_good_have_a_sign_and_a_colour() {
 fn every_pair_of_three_channels_has_a_picture_and_two_channels_have_one() {
     let [_, good] = pages_of_three_channels();
     let Some(mut page) = Page::open(&good) else { return };
-    // As the page holds them; numbers of pixels are there once a picture is drawn.
+    // Pictures as in the page; their sizes are known once they are drawn.
     let pictures = "[...document.querySelectorAll('figure img')].map(img => [img.closest('figure').id, decodeURIComponent(img.src)])";
     page.wait_until(
         "[...document.querySelectorAll('figure img')].every(img => img.complete && img.naturalWidth > 100)",
@@ -238,7 +238,7 @@ fn every_pair_of_three_channels_has_a_picture_and_two_channels_have_one() {
     let captions: Vec<String> =
         page.evaluate("[...document.querySelectorAll('#left-out figcaption')].map(of => of.innerText.trim())");
     assert!(captions.len() == 3 && captions.iter().all(|of| of.starts_with("Episode ")), "{captions:?}");
-    // The map has the colours of many deviations.
+    // The map has colours for many deviations.
     let mut shades = page.shades("#errors img");
     shades.sort_unstable();
     shades.dedup();

@@ -1,4 +1,4 @@
-//! The program as its users meet it.
+//! Tests the program from a user's point of view.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 #![allow(clippy::print_stderr, reason = "what is not tried is said")]
@@ -11,7 +11,7 @@ use std::process::{Command, Stdio};
 use running::{command, folder, run, run_in};
 use serde_json::Value;
 
-/// All but `serve`, whose example needs a feature: tests/serve.rs.
+/// All verbs except `serve`, whose example needs a feature: tests/serve.rs.
 const VERBS: [&str; 12] = [
     "check",
     "fit",
@@ -49,7 +49,7 @@ fn every_help_ends_with_an_example_that_runs() {
     }
 }
 
-/// The flags of reading files are many: `check` lists them all, and every command knows them.
+/// There are many flags for reading files: `check` lists them all, and every command accepts them.
 #[test]
 fn the_help_of_fit_is_brief_and_begins_with_learning() {
     let (fit, check) = (run("fit --help").out, run("check --help").out);
@@ -84,7 +84,7 @@ fn write_under_one_constraint(file: &str) {
     std::fs::write(folder().join(file), format!("episode,t,x,y\n{rows}")).unwrap();
 }
 
-/// One constraint for all movements: what matters is said, however long it is.
+/// One constraint for all movements: all findings that cast doubt are shown, however long.
 #[test]
 fn a_doubtful_verdict_shows_every_finding_that_casts_doubt() {
     write_under_one_constraint("same.csv");
@@ -130,7 +130,7 @@ fn all_constraints_are_in_json_and_five_of_them_on_the_terminal() {
     assert!(out.contains(&format!("and {} more: --json shows all", all - 5)), "{out}");
 }
 
-/// One number, one meaning: 0 outside the data, where neither deviation nor potential is known.
+/// Support is 0 outside the data, where neither deviation nor potential exists.
 #[test]
 fn support_is_none_outside_the_data() {
     let ran = run("predict toy.json --at 50,50");
@@ -243,17 +243,18 @@ fn errors_have_three_lines_and_a_code() {
     assert!(ran.out.contains("not met"));
 }
 
-/// Words of a text, whatever lines they are on.
+/// Words of a text, independent of line breaks.
 fn words(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
-/// An error along the motion says nothing of other directions: where the true policy is known, it must be met in all.
+/// An error along the motion does not measure other directions: if the true policy is known, `--require` applies to
+/// all directions.
 #[test]
 fn an_error_is_required_in_all_directions_where_it_is_known() {
     let rows = std::fs::read_to_string(folder().join("toy.csv")).unwrap();
     let (head, rows) = rows.split_once('\n').unwrap();
-    // A true policy that is another one.
+    // A true policy that differs from the learnt one.
     let with = |row: &str| {
         let fields: Vec<&str> = row.split(',').collect();
         format!("{row},{},{}\n", fields[3], fields[2])
@@ -274,7 +275,7 @@ fn an_error_is_required_in_all_directions_where_it_is_known() {
     );
 }
 
-/// A robot of no use is named, as one that is used is among the decisions; one that cannot be used is refused.
+/// A robot without effect is reported, and one with effect appears among the decisions; an unusable one is refused.
 #[test]
 fn what_a_robot_changes_is_said() {
     let link = |name: &str| {
@@ -299,7 +300,7 @@ fn what_a_robot_changes_is_said() {
     assert!(ran.err.contains("try: no --robot, or --learner auto or --learner slope"), "{}", ran.err);
 }
 
-/// Two errors that are measured in different ways have different names.
+/// Two errors that are measured differently have different names.
 #[test]
 fn errors_of_a_fit_say_what_they_are_relative_to() {
     let out = words(&run("fit toy.csv -o errors.json --hold-out 20%").out);
@@ -312,7 +313,7 @@ fn errors_of_a_fit_say_what_they_are_relative_to() {
     }
 }
 
-/// A recorder that stamps samples twice in every episode gets a few lines, and how many more there are.
+/// For a recorder with duplicate stamps in every episode, a few warnings are printed with the number of the others.
 #[test]
 fn warnings_are_counted() {
     let sample = |episode: i32, i: i32| format!("{episode},{},{}\n", f64::from(i / 2 * 2) * 0.1, f64::from(i * i + i));
@@ -411,7 +412,7 @@ fn roll_outs_for_viewers_are_those_of_rollout() {
     );
     assert_eq!(run("convert two.mcap -o two.csv").code, Some(0));
     assert_eq!(run("rollout toy.json --from 1.5,1 --constraint wall.toml -o one.csv").code, Some(0));
-    // Without the column of time: stamps of a bag are whole nanoseconds.
+    // Without the time column: stamps in a bag are whole nanoseconds.
     let read = |name: &str| {
         let text = std::fs::read_to_string(folder().join(name)).unwrap();
         assert!(text.starts_with("episode,t,x,y,"), "{text:.40}");
@@ -422,7 +423,7 @@ fn roll_outs_for_viewers_are_those_of_rollout() {
     assert!(one.len() > 10 && two.len() > one.len());
     assert_eq!(two[..one.len()], one, "to the last digit");
     assert_eq!(two[one.len()][..3], ["1", "-1.0", "0.5"]);
-    // Without starts, as many as there is room for.
+    // Without starts, the default number of roll-outs.
     let ran = run("export toy.json --to mcap -o many.mcap");
     assert!(ran.out.contains("12 roll-outs"), "{}{}", ran.out, ran.err);
     let ran = run("check many.mcap --quiet");
@@ -434,7 +435,7 @@ fn resampled_recordings_are_as_long() {
     let ran = run("convert toy.csv -o often.csv --resample 100");
     assert_eq!(ran.code, Some(0), "{}", ran.err);
     let ran = run("check often.csv --quiet");
-    // 1.95 s a movement, both ends included.
+    // 1.95 s per movement, including both ends.
     assert!(ran.out.contains("40 episodes, 7840 samples"), "{}", ran.out);
     assert!(ran.out.contains("0.01 s (100 Hz)"), "{}", ran.out);
 }
@@ -452,7 +453,7 @@ fn a_constraint_left_out_is_predicted_by_the_others() {
         assert!(left["evaluation"]["policy_error"].as_f64().unwrap() < 1e-3, "{left}");
     }
     assert_eq!(run("evaluate toy.json rails.csv --leave-constraint-out --require 1e-3").code, Some(0));
-    // Movements of one rail that went the other way are not.
+    // Movements in the opposite direction on one rail are not.
     let text = std::fs::read_to_string(folder().join("rails.csv")).unwrap();
     let backwards = |line: &str| {
         let mut fields: Vec<String> = line.split(',').map(ToOwned::to_owned).collect();
@@ -467,7 +468,7 @@ fn a_constraint_left_out_is_predicted_by_the_others() {
     assert_eq!(ran.code, Some(1), "{}{}", ran.out, ran.err);
 }
 
-/// With y in millimetres, held-out episodes and the picture of the page are in the units of the file.
+/// With y in millimetres, held-out episodes and the page's picture are in the units of the file.
 #[test]
 fn held_out_episodes_are_in_learnt_units() {
     let text = std::fs::read_to_string(folder().join("toy.csv")).unwrap();
@@ -555,7 +556,7 @@ fn completions_and_manual_pages_are_well_formed() {
     }
 }
 
-/// What `--truth` names is used, what else there is beside it is not.
+/// Columns named by `--truth` are used; other columns are reported as unused.
 #[test]
 fn columns_of_the_truth_are_not_called_unused() {
     let toy = std::fs::read_to_string(folder().join("toy.csv")).unwrap();
@@ -581,7 +582,7 @@ fn columns_of_the_truth_are_not_called_unused() {
     assert!(ran.err.contains("columns not used: pi_x, pi_y:"), "{}", ran.err);
 }
 
-/// What PolicyAlign cannot align is named, and which numbers are the Gaussian process's.
+/// A movement that PolicyAlign cannot align is named, and the Gaussian process's numbers are marked.
 #[test]
 fn a_movement_that_is_not_aligned_is_left_out_by_name() {
     let toy = std::fs::read_to_string(folder().join("toy.csv")).unwrap();
@@ -612,7 +613,8 @@ fn a_movement_that_is_not_aligned_is_left_out_by_name() {
     assert!(!page.contains("(of PolicyAlign)") && !page.contains("(of the Gaussian process)"));
 }
 
-/// Of two readings the user may choose one, which is then no doubt; where another learner is asked for, that is said.
+/// The user may choose between two readings, which removes the doubt; the hint mentions it if another learner was
+/// requested.
 #[test]
 fn the_choice_between_two_readings_is_offered_where_it_is_heeded() {
     write_under_one_constraint("readings.csv");

@@ -1,5 +1,6 @@
-//! Data sets whose reading is known, with all numbers that the reading follows from: `SEEDS=1,2 cargo test --release -p policy-align
-//! --test reading_sets -- --ignored --nocapture` prints them as tab-separated values. Rules can then be compared without a fit.
+//! Data sets with a known reading, and all numbers that determine the estimated reading:
+//! `SEEDS=1,2 cargo test --release -p policy-align --test reading_sets -- --ignored --nocapture` prints them as tab-separated
+//! values, so that rules can be compared without a fit.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 #![allow(clippy::print_stdout, reason = "the table is printed")]
@@ -21,18 +22,18 @@ use rand_chacha::ChaCha8Rng;
 
 const MAX_ROWS: usize = 400;
 
-/// How a data set is learnt from.
+/// How a policy is learnt from a data set.
 #[derive(Clone)]
 enum Learning {
-    /// As the experiments do, velocities exact or of smoothed positions.
+    /// As in the experiments, with exact velocities or those of smoothed positions.
     Crate(FrontEnd),
-    /// By the program, with this share of noise on velocities.
+    /// With the program, and this share of noise on velocities.
     Program(f64),
-    /// By the program, from positions with this share of noise.
+    /// With the program, from positions with this share of noise.
     Positions(f64),
 }
 
-/// Movements of one kind.
+/// A data set of one kind of movement.
 struct Set {
     name: String,
     truth: &'static str,
@@ -54,7 +55,7 @@ fn error(policy: &dyn LearntPolicy, recordings: &[Recording]) -> f64 {
     metrics::nupe(&truth, &learnt).unwrap_or(f64::NAN)
 }
 
-/// What the experiments fit, or none.
+/// The fit of a data set, if successful.
 fn learnt(set: &Set, seed: u64) -> Option<AutoFit> {
     let (has, noise) = match set.learning.clone() {
         Learning::Crate(front_end) => {
@@ -113,7 +114,7 @@ fn line(set: &Set, seed: u64) -> Option<String> {
     ))
 }
 
-/// Movements of `beyond`, of each policy and kind of constraint.
+/// The data sets of the experiment `beyond`, for each policy and kind of constraint.
 fn beyond(seed: u64) -> Vec<Set> {
     use ConstraintKind::{Free, HalfFree, OneForAll, Varying};
     use PolicyKind::{Handwriting, LimitCycle, Planes, Sinusoidal, Swirl, Wells};
@@ -184,7 +185,7 @@ fn beyond(seed: u64) -> Vec<Set> {
     sets
 }
 
-/// The paper's robots, whose constraints differ.
+/// The paper's robots, with varying constraints.
 fn robots(seed: u64) -> Vec<Set> {
     let body = || {
         let urdf = include_str!("../../../robots/asimo_upper_body.urdf");

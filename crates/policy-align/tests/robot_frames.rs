@@ -1,4 +1,4 @@
-//! A robot in MCAP as viewers draw it, read back with the library of the format.
+//! A robot in MCAP files for viewers, read back with the format's library.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 #![cfg(feature = "mcap")]
@@ -13,7 +13,7 @@ use policy_align::{RobotFrames, demo_io, motion};
 use proptest::prelude::*;
 use running::{folder, run};
 
-/// Turns, slides, stays, and follows: axes and origins at all angles.
+/// Rotating, sliding, fixed and mimic joints, with oblique axes and origins.
 const ROBOT: &str = r#"<robot name="press">
   <link name="world"/><link name="column"/><link name="ram"/><link name="plate"/><link name="finger"/><link name="thumb"/>
   <joint name="turn" type="continuous"><parent link="world"/><child link="column"/>
@@ -45,7 +45,7 @@ fn recordings(channels: &[(&str, Option<&str>)], episodes: &[DMatrix<f64>]) -> R
     }
 }
 
-/// The bytes of a message of ROS 2, taken apart by its definition.
+/// Decodes the bytes of a ROS 2 message by its definition.
 struct Cdr<'a>(&'a [u8], usize);
 
 impl<'a> Cdr<'a> {
@@ -140,7 +140,7 @@ fn compare(urdf: &str, made: &Recordings, q: impl Fn(DVector<f64>) -> DVector<f6
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(32))]
 
-    /// Joints by name in another order than the file's, one of them not recorded.
+    /// Joints in another order than the file's, matched by name; one is not recorded.
     #[test]
     fn links_are_where_forward_kinematics_has_them(
         numbers in proptest::collection::vec(-4.0..4.0f64, 2 * 30),
@@ -157,7 +157,7 @@ proptest! {
     }
 }
 
-/// Several chunks, whose index finds every message of every topic.
+/// Several chunks, whose index contains every message of every topic.
 #[test]
 fn a_robot_of_the_project_that_fills_chunks() {
     let urdf = std::fs::read_to_string("../../robots/seven_joint_arm.urdf").unwrap();
@@ -215,7 +215,7 @@ fn robots_that_do_not_fit_are_refused() {
     let message = refused(&[("x", None), ("goal", None), ("y", None), ("z", None)]).unwrap();
     assert_eq!(message, "press: channels are its joints turn, lift, grip in this order");
     assert!(RobotFrames::from_urdf("<robot", &[], &[]).is_err());
-    // A state where no link can be.
+    // A state at which links cannot be placed.
     let made = recordings(&[("lift", None)], &[DMatrix::from_element(1, 2, 1e300)]);
     let path = tempfile::tempdir().unwrap().keep().join("far.mcap");
     let frames = RobotFrames::from_urdf(ROBOT, &made.state, &[]).unwrap();

@@ -1,4 +1,4 @@
-//! Roll-outs: where they go, what they keep, why they end.
+//! Roll-outs: their paths, their constraints, and their ends.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
@@ -54,7 +54,7 @@ fn it_comes_to_rest_where_the_potential_is_least() {
     assert_eq!(path.broken_by, None);
 }
 
-/// Where it comes to rest does not depend on how often the path is sampled.
+/// The state of rest does not depend on the sampling of the path.
 #[test]
 fn rest_does_not_depend_on_the_step() {
     let model = toy_model();
@@ -115,7 +115,7 @@ fn rows_and_functions_do_what_a_file_does() {
     let of = |constraints| follow(&RollOut { constraints, seconds: Some(12.0), ..RollOut::default() }, &start);
     let file = of(constraints("[[constraint]]\nnormal = [1, 0.5]"));
     assert_eq!(of(ConstraintSet::normal(dmatrix![1.0, 0.5], 2).unwrap()), file);
-    // A function never lets a movement come to rest, so its path may be the longer one.
+    // Under a function, a roll-out never ends at rest, so its path may be longer.
     let begins_as = |path: &Path, other: &Path| {
         assert!(path.states.ncols() >= other.states.ncols() && other.states.ncols() > 5);
         assert_eq!(path.states.columns(0, other.states.ncols()), other.states);
@@ -132,7 +132,7 @@ fn a_rail_that_turns_is_followed_at_every_moment() {
     let path = follow(&RollOut { constraints: turning, seconds: Some(6.0), ..RollOut::default() }, &dvector![1.5, 1.0]);
     assert_eq!(path.stop, Stop::Time);
     assert!(path.times.iter().zip(path.velocities.column_iter()).all(|(&t, u)| normal(t).dot(&u).abs() < 1e-12));
-    // Small steps of Euler's method, with the rail of each moment.
+    // Small steps of Euler's method, with the rail at each moment.
     let (policy, step) = (toy_model(), 1e-4);
     let mut x = dvector![1.5, 1.0];
     for k in 0..60_000 {
@@ -211,7 +211,7 @@ fn limits_and_the_end_of_the_data_stop_it() {
     assert_eq!(error, RollOutError::StartBeyondLimit { joint: "x".to_owned() });
     assert!(JointLimits::from_urdf(TIP, &["a".to_owned()]).unwrap_err().contains("x, y"));
 
-    // A policy that runs out of what was shown: always to the right.
+    // A policy that leaves the data: always to the right.
     let to_the_right = motion::Demonstrations::new(
         (0..12)
             .map(|k| {
@@ -262,7 +262,7 @@ fn what_cannot_be_followed_is_refused() {
     }
 }
 
-/// The toy model with every weight times a factor.
+/// The toy model with every weight multiplied by a factor.
 fn stronger(factor: f64) -> Model {
     let mut model = toy_model();
     let mut learnt = serde_json::to_value(&model.learnt).unwrap();
@@ -273,7 +273,7 @@ fn stronger(factor: f64) -> Model {
     model
 }
 
-/// Seconds of this thread.
+/// Processor time of this thread in seconds.
 fn cost(work: impl FnOnce()) -> f64 {
     let started = ThreadTime::now();
     work();
@@ -374,7 +374,7 @@ proptest! {
     fn constraints_act_at_right_angles_in_the_learners_units(
         angle in 0.0..TAU, scale_x in 0.2..5.0, scale_y in 0.2..5.0, x in -1.0..1.0, y in -1.0..1.0,
     ) {
-        // The same movement, told in other units, is the same movement.
+        // The same movement in other units.
         let plain = toy_model();
         let mut model = plain.clone();
         for (channel, scale) in model.state.iter_mut().zip([scale_x, scale_y]) {

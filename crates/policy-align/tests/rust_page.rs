@@ -1,4 +1,4 @@
-//! The program that docs/rust.md prints is the one that is built and run as a crate outside of the workspace.
+//! The program printed in docs/rust.md is the one that is built and run as a crate outside of the workspace.
 
 #[test]
 fn the_page_prints_the_downstream_program() {

@@ -1,4 +1,4 @@
-//! `serve` without a robot; with one it is tested in crates/policy-align-py/tests/test_ros2.py.
+//! `serve` without a robot; crates/policy-align-py/tests/test_ros2.py tests it with one.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 

@@ -1,4 +1,4 @@
-//! `fit --robot` where constraints are on a robot's tool: they are learnt from in its task space.
+//! `fit --robot` with constraints on a robot's tool: the policy is learnt in the tool's task space.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
@@ -12,10 +12,11 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 const ARM: &str = include_str!("../../../robots/seven_joint_arm.urdf");
-/// Movements that are not learnt from.
+/// Number of test movements, which are not in the training set.
 const FRESH: usize = 10;
 
-/// A fit with an arm in a plane, which turns about one axis, so that no orientation can be held while it moves. Joints are in this unit.
+/// A fit with a planar arm, which rotates about one axis only, so that no orientation can be held while it moves. Joints are in this
+/// unit.
 fn in_a_plane(unit: &str, radians: f64) -> Model {
     let mut rng = ChaCha8Rng::seed_from_u64(5);
     let episode = |number: usize| {

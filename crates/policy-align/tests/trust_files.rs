@@ -1,4 +1,4 @@
-//! A trust report and the model next to it: whoever reads the model hears if they do not belong together.
+//! A trust report next to a model: reading the model warns if they do not belong together.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
@@ -57,10 +57,10 @@ fn a_report_names_its_model_and_another_model_is_warned_of() {
         }
         fs::write(path(other), own).unwrap();
     }
-    // A fit without a report leaves that of the model before it.
+    // A fit without a report leaves the previous model's report.
     let ran = run_in(folder.path(), "fit rails.csv -o toy.json --max-rows 60 --no-report");
     assert_eq!(ran.err.matches(WARNING).count(), 2, "{}", ran.err);
-    // What an older program wrote names no model.
+    // Reports of older versions do not name a model.
     fs::write(path("toy.trust.html"), "<p>seed 1.").unwrap();
     fs::write(path("toy.trust.json"), "{}").unwrap();
     assert!(!run_in(folder.path(), lines[0]).err.contains(WARNING));

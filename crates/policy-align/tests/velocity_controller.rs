@@ -1,4 +1,4 @@
-//! Joint states in, velocities out: what `predict` says where the robot may move, and zero with its reason elsewhere.
+//! Joint states in, velocities out: the prediction where the robot may move, and zero with a reason elsewhere.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
@@ -13,7 +13,7 @@ use nalgebra::{DVector, dmatrix, dvector};
 use policy_align::{ControllerError, Halt, Model, Quantity, VelocityCommand, VelocityController};
 use proptest::prelude::*;
 
-/// Of channels x and y.
+/// A model with channels x and y.
 fn model() -> &'static Model {
     static MODEL: OnceLock<Model> = OnceLock::new();
     MODEL.get_or_init(|| slope(&toy(20, 20)))
@@ -34,7 +34,7 @@ fn controller() -> VelocityController<'static> {
     VelocityController::new(model(), &[], STALE).unwrap()
 }
 
-/// What is commanded as soon as x and y are there.
+/// The command when x and y are known.
 fn at(controller: &mut VelocityController<'_>, [x, y]: [f64; 2]) -> VelocityCommand {
     controller.observe(&words(&["x", "y"]), &[x, y], NOW);
     controller.command(NOW)
@@ -44,11 +44,11 @@ fn stands(command: &VelocityCommand) -> bool {
     command.halt.is_some() && command.velocities == DVector::zeros(2)
 }
 
-/// Within the data of most movements.
+/// Coordinates within the data of most movements.
 const WITHIN: std::ops::Range<f64> = -0.4..0.4;
 
 proptest! {
-    /// Supported states get the policy's action to the bit; others stop.
+    /// Supported states yield the policy's action bit for bit; others stop the robot.
     #[test]
     fn the_policy_where_it_is_supported(x in -4.0..4.0f64, y in -4.0..4.0f64) {
         let (policy, command) = (model().policy(), at(&mut controller(), [x, y]));
@@ -64,7 +64,7 @@ proptest! {
         prop_assert_eq!(command.age, Some(0.0));
     }
 
-    /// Joints are found by name, in any order and among others, and in separate messages.
+    /// Joints are found by name, in any order, among others, and in separate messages.
     #[test]
     fn the_order_of_a_message_is_free(
         [x, y] in prop::array::uniform2(WITHIN),
@@ -83,7 +83,7 @@ proptest! {
         prop_assert_eq!(controller.command(NOW), expected);
     }
 
-    /// The command has the order of the joints that are asked for, whatever they are called.
+    /// The command has the order of the requested joints, whatever their names.
     #[test]
     fn permuted_joints_permute_the_command([x, y] in prop::array::uniform2(WITHIN)) {
         let expected = at(&mut controller(), [x, y]).velocities;
@@ -95,7 +95,7 @@ proptest! {
         prop_assert_eq!(command.velocities, dvector![expected[1], expected[0]]);
     }
 
-    /// The oldest joint counts.
+    /// The oldest position counts.
     #[test]
     fn stale_states_stop([x, y] in prop::array::uniform2(WITHIN), age in 0.0..0.4f64, later in 0.0..1.0f64) {
         let mut controller = controller();
@@ -111,7 +111,7 @@ proptest! {
             prop_assert_eq!(&command.halt, &None);
             prop_assert_eq!(command.velocities, at(&mut controller, [x, y]).velocities);
         }
-        // A new message starts it again.
+        // A new message restarts it.
         controller.observe(&words(&["y", "x"]), &[y, x], NOW + 2 * age);
         prop_assert_eq!(controller.command(NOW + 2 * age).halt, None);
     }
@@ -136,7 +136,7 @@ proptest! {
         prop_assert_eq!(at(&mut controller, [other, other]).halt, None);
     }
 
-    /// As fast as allowed, in the same direction.
+    /// The speed limit is reached in the same direction.
     #[test]
     fn speed_is_limited_by_one_factor([x, y] in prop::array::uniform2(WITHIN), limit in 1e-3..2.0f64) {
         let free = at(&mut controller(), [x, y]).velocities;
@@ -149,7 +149,7 @@ proptest! {
         }
     }
 
-    /// Channels in degrees and centimetres are radians and metres of the robot.
+    /// Channels in degrees and centimetres are converted to the robot's radians and metres.
     #[test]
     fn units_are_converted([x, y] in prop::array::uniform2(WITHIN)) {
         let mut model = model().clone();
@@ -174,7 +174,7 @@ fn missing_joints_stop_and_are_named() {
     };
     assert_eq!(halt(&controller), Halt::NoState);
     assert_eq!(halt(&controller).to_string(), "no joint state received");
-    // Names without positions, as of a message of velocities alone.
+    // Names without positions, as in a message with velocities only.
     controller.observe(&words(&["x", "y"]), &[], NOW);
     assert_eq!(halt(&controller), Halt::Missing { joints: words(&["x", "y"]), found: vec![] });
     assert_eq!(halt(&controller).to_string(), "no position of x, y; joints of the last message: none");

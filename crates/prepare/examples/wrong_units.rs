@@ -1,4 +1,4 @@
-//! Prepares recordings whose velocities have the wrong unit, and prints what was decided and found.
+//! Prepares recordings whose velocities have the wrong unit, and prints the decisions and findings.
 
 #![allow(clippy::print_stdout, reason = "a program")]
 
@@ -6,7 +6,7 @@ use motion::{Channel, Episode, Recordings, Source, Times};
 use nalgebra::DMatrix;
 use prepare::{PrepareError, PrepareOptions, prepare};
 
-/// A movement towards the origin at 20 Hz: positions in metres, velocities by mistake in millimetres per second.
+/// A movement towards the origin at 20 Hz: positions in metres, velocities erroneously in millimetres per second.
 fn movement(k: u8) -> Episode {
     let position = |axis: usize, i: usize| (f64::from(k) + axis as f64).cos() * (-0.025 * i as f64).exp();
     Episode {

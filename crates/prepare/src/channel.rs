@@ -6,27 +6,27 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct StateChannel {
-    /// As in the recording.
+    /// Name in the recording.
     pub name: String,
-    /// If the recording or the user names it.
+    /// Unit, if the recording or the user states it.
     pub unit: Option<String>,
-    /// Factor on the channel before learning.
+    /// Factor that is applied to the channel before learning.
     pub scale: f64,
-    /// Least value learnt from.
+    /// Smallest value in the training data.
     pub low: f64,
-    /// Largest value learnt from.
+    /// Largest value in the training data.
     pub high: f64,
-    /// Median of the values learnt from.
+    /// Median of the training data.
     pub median: f64,
 }
 
 impl StateChannel {
-    /// The largest distance from 0 in turns, if it is an angle in radians.
+    /// The largest distance from 0 in turns, if the channel is an angle in radians.
     pub fn turns(&self) -> f64 {
         self.low.abs().max(self.high.abs()) / TAU
     }
 
-    /// Factors of those of these channels that have one, as [`PrepareOptions::scale`](crate::PrepareOptions::scale) takes them.
+    /// Factors of the channels that have one, in the form of [`PrepareOptions::scale`](crate::PrepareOptions::scale).
     pub fn factors<'a>(channels: impl IntoIterator<Item = &'a StateChannel>) -> Vec<(String, f64)> {
         let scaled = channels.into_iter().filter(|channel| channel.scale != 1.0);
         scaled.map(|channel| (channel.name.clone(), channel.scale)).collect()

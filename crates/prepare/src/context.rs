@@ -1,4 +1,4 @@
-//! Tells the context from the state.
+//! Separates the context from the state.
 
 use motion::{Channel, Demonstrations, Episode, Verdict, is_called_context};
 use nalgebra::DVector;
@@ -8,10 +8,10 @@ use crate::numbers::counted;
 use crate::options::ContextUse;
 use crate::{PrepareError, StateChannel};
 
-/// Different contexts under which what is learnt between them is a guess.
+/// With fewer different contexts than this, predictions between them are a guess.
 const FEW: usize = 8;
 
-/// Takes the context out of the state of every episode: the channels that remain and those of the context.
+/// Removes the context from the state of every episode; returns the remaining channels and those of the context.
 pub(crate) fn split(
     episodes: &mut [Episode],
     channels: &[Channel],
@@ -61,8 +61,8 @@ fn named(names: &[String], channels: &[Channel], episodes: &[Episode]) -> Result
     names.iter().map(place).collect()
 }
 
-/// Channels that are context by what they are called and how they behave. Others that never move may be an axis that every
-/// constraint blocked, so that they stay state.
+/// Channels that are context by name and behaviour. Other constant channels may be an axis that every constraint blocked,
+/// so they remain state.
 fn found(channels: &[Channel], episodes: &[Episode], notes: &mut Notes) -> Vec<usize> {
     let behaves = |&at: &usize| {
         let differs = episodes.iter().any(|of| of.positions[(at, 0)] != episodes[0].positions[(at, 0)]);
@@ -90,7 +90,7 @@ fn is_constant(episode: &Episode, channel: usize) -> bool {
     episode.positions.row(channel).iter().all(|&x| x == episode.positions[(channel, 0)])
 }
 
-/// How many contexts there are, and whether leaving out a movement leaves out its context.
+/// Reports the number of contexts, and whether leaving out a movement leaves out its context.
 pub(crate) fn remark(demonstrations: &Demonstrations, context: &[StateChannel], notes: &mut Notes) {
     if context.is_empty() {
         return;

@@ -3,7 +3,7 @@ use motion::Verdict;
 use crate::StateChannel;
 use crate::notes::Notes;
 
-/// Says which channels seem to be angles in degrees.
+/// Reports channels that seem to be angles in degrees.
 pub(crate) fn remark(state: &[StateChannel], notes: &mut Notes) {
     let degrees: Vec<&str> =
         state.iter().filter(|channel| in_degrees(channel)).map(|channel| channel.name.as_str()).collect();
@@ -16,7 +16,7 @@ pub(crate) fn remark(state: &[StateChannel], notes: &mut Notes) {
     }
 }
 
-/// By its unit, else by its name, else a joint beyond what joints in radians reach.
+/// Decides by the unit, else by the name, else by a joint angle beyond the usual range in radians.
 fn in_degrees(channel: &StateChannel) -> bool {
     let name = channel.name.to_lowercase();
     match channel.unit.as_deref().map(str::to_lowercase).as_deref() {

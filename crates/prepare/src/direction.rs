@@ -1,7 +1,7 @@
 use crate::StateChannel;
 
-/// A direction of the state (n) by its channels: "x", "0.7 x − 0.7 y". Small parts are left out, and it has no sign: the
-/// first part is positive.
+/// A direction of the state (n) in terms of its channels: "x", "0.7 x − 0.7 y". Small components are omitted. The
+/// direction has no sign: its first component is positive.
 pub fn direction_by_channels(direction: &[f64], state: &[StateChannel]) -> String {
     let names: Vec<&str> = state.iter().map(|channel| channel.name.as_str()).collect();
     let largest = direction.iter().fold(0.0_f64, |largest, part| largest.max(part.abs()));
@@ -11,7 +11,8 @@ pub fn direction_by_channels(direction: &[f64], state: &[StateChannel]) -> Strin
     sum_of_parts(&direction, &names, 1)
 }
 
-/// A direction as a sum of named parts, with so many decimals: what rounds to nothing beside the largest is left out.
+/// A direction as a sum of named components with `decimals` decimals; components that round to 0 relative to the largest
+/// are omitted.
 pub fn sum_of_parts(direction: &[f64], names: &[&str], decimals: u8) -> String {
     let largest = direction.iter().fold(0.0_f64, |largest, part| largest.max(part.abs()));
     let least = 0.1_f64.powi(i32::from(decimals));

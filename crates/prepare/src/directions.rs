@@ -3,11 +3,11 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::samples::noise::{each_velocity, of_velocities};
 
-/// Samples slower than this share of the median are left out: their direction is noise.
+/// Samples slower than this share of the median are skipped, because their direction is noise.
 const STILL: f64 = 0.01;
 
-/// Coverage of the directions of motion: n times the least eigenvalue of the mean of d dᵀ, d = u/‖u‖, 1 if all directions
-/// occur alike and 0 if one never does, and that direction, (n).
+/// Coverage of the directions of motion, and the least covered direction, (n). Coverage is n times the least eigenvalue
+/// of the mean of d dᵀ, d = u/‖u‖: 1 if all directions occur equally, and 0 if one never does.
 pub fn directions(demonstrations: &Demonstrations) -> (f64, DVector<f64>) {
     let usual = upper_median(of_velocities(demonstrations, |u| u.norm()));
     let least = STILL * usual.expect("demonstrations have samples");

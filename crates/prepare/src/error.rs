@@ -1,22 +1,22 @@
 use motion::MotionError;
 use thiserror::Error;
 
-/// Why recordings cannot be learnt from. Samples count from 0.
+/// Reasons why recordings cannot be learnt from. Samples count from 0.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum PrepareError {
-    /// There is nothing.
+    /// There are no episodes.
     #[error("there is no episode; give at least one")]
     Empty,
-    /// Nothing is left.
+    /// No episode remains.
     #[error("all {of} episodes were left out ({why}); record movements")]
     NothingLeft {
-        /// How many there were.
+        /// Number of episodes before.
         of: usize,
-        /// Why the first was left out.
+        /// The reason for leaving out the first.
         why: String,
     },
-    /// Few samples of many dimensions: rows and columns may be exchanged, and otherwise there is hardly anything to learn from.
+    /// Few samples of many dimensions: rows and columns may be swapped, or there is hardly anything to learn from.
     #[error(
         "the state has {dim} dimensions and the longest episode {longest} samples, {samples} in all: rows and columns seem to be exchanged, or samples are too few; --samples-are with the other orientation, or record more"
     )]
@@ -28,12 +28,12 @@ pub enum PrepareError {
         /// Samples of all episodes.
         samples: usize,
     },
-    /// A scale for something that is not there.
+    /// A scale for a channel that does not exist.
     #[error("--scale names '{name}', but the state has {known}; use one of these names")]
     UnknownChannel {
-        /// The name given.
+        /// The given name.
         name: String,
-        /// The names there are.
+        /// The existing names.
         known: String,
     },
     /// A scale that is not positive and finite.
@@ -41,39 +41,39 @@ pub enum PrepareError {
     Scale {
         /// The channel.
         name: String,
-        /// The factor given.
+        /// The given factor.
         factor: f64,
     },
     /// A time step that is not positive and finite.
     #[error("--dt {time_step} is not positive and finite; give seconds between samples")]
     TimeStep {
-        /// The time step given.
+        /// The given time step.
         time_step: f64,
     },
-    /// A window that cannot smooth.
+    /// A window that is not suitable for smoothing.
     #[error(
         "--smooth: a window of {window} samples, {step} s apart; an odd number of at least 5, as in --smooth 9, or seconds, as in --smooth {}s", crate::numbers::short(9.0 * step)
     )]
     Smoothing {
-        /// Samples in it.
+        /// Number of samples in the window.
         window: usize,
-        /// Seconds between them.
+        /// Seconds between samples.
         step: f64,
     },
-    /// A context that is none.
+    /// A context that is not valid.
     #[error("--context names '{name}', but {why}")]
     Context {
-        /// The name given.
+        /// The given name.
         name: String,
-        /// Why it cannot be one, and what can.
+        /// Reason, and valid alternatives.
         why: String,
     },
     /// An episode is not a movement.
     #[error("episode '{episode}': {source}")]
     Episode {
-        /// Its name.
+        /// Name of the episode.
         episode: String,
-        /// What is wrong with it.
+        /// Description of the fault.
         source: MotionError,
     },
 }

@@ -31,20 +31,20 @@
 //! # Ok::<(), prepare::PrepareError>(())
 //! ```
 //!
-//! No other crate judges recordings: readers pass on what they find, learners take what is prepared.
-//! [`Prepared`] holds the demonstrations, every [`Decision`](motion::Decision) with the flag that overrides it, every
-//! [`Finding`](motion::Finding), those of the reader first, and every episode that was [left out](motion::LeftOut). The guide
-//! is `docs/your-own-data.md`; `docs/decisions/trust.md` gives the reasons.
+//! No other crate judges recordings: readers pass on their results unjudged, learners take the prepared data. [`Prepared`] holds the
+//! demonstrations, every [`Decision`](motion::Decision) with the flag that overrides it, every [`Finding`](motion::Finding), those of the
+//! reader first, and every episode that was [left out](motion::LeftOut). The guide is `docs/your-own-data.md`; `docs/decisions/trust.md`
+//! gives the reasons.
 //!
 //! # When it fails
 //!
-//! - [`PrepareError`]: no episodes, no motion, rows and columns exchanged, or an option that does not fit the data.
+//! - [`PrepareError`]: no episodes, no motion, rows and columns swapped, or an option that does not fit the data.
 //! - **Episodes that are duplicates or stand still** are dropped and listed in [`Prepared::left_out`].
 //! - **Time stamps in the wrong unit without velocities** look like a slower policy; only the time step reveals it.
 //! - **Noise of more than a few per cent in positions alone** cannot be removed without losing the velocity. Record
 //!   velocities or commands.
-//! - **A push, a speed limit, late velocities or quaternions** hide a part of the policy. They are found and named, not repaired, except for
-//!   the signs of quaternions.
+//! - **A push, a speed limit, delayed velocities or quaternions** hide a part of the policy. They are detected and reported, not repaired,
+//!   except for the signs of quaternions.
 //! - **Mixed units** (metres and radians): [`PrepareOptions::scale`] sets a factor; learners may find
 //!   one ([`Prepared::rescaled`]).
 
@@ -84,12 +84,11 @@ use motion::Recordings;
 
 use notes::Notes;
 
-/// Makes demonstrations of recordings: time, units, velocities, noise, and what is wrong with them. Recordings that are handed over,
-/// not lent, become the demonstrations without a copy.
+/// Turns recordings into demonstrations: determines time steps, units, velocities and noise, and reports faults. Owned recordings become
+/// the demonstrations without a copy.
 ///
 /// # Errors
-/// [`PrepareError`] where nothing can be learnt: no episode, no motion, rows and columns exchanged, or an option that
-/// does not fit.
+/// [`PrepareError`] if nothing can be learnt: no episode, no motion, rows and columns swapped, or an option that does not fit.
 pub fn prepare<'a>(
     recordings: impl Into<Cow<'a, Recordings>>,
     options: &PrepareOptions,

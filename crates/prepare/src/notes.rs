@@ -23,10 +23,10 @@ impl Notes {
     }
 }
 
-/// What follows the name of an episode in those of the pieces that it was cut into, before their first sample.
+/// Text between the name of an episode and the first sample in the name of a piece that was cut from it.
 pub(crate) const PIECE: &str = " from sample ";
 
-/// "", or " (and 3 more)" of four.
+/// "" for one, " (and 3 more)" for four.
 pub(crate) fn and_more(count: usize) -> String {
     if count > 1 { format!(" (and {} more)", count - 1) } else { String::new() }
 }

@@ -1,12 +1,12 @@
-//! How numbers look in findings, decisions and on the terminal.
+//! Formatting of numbers in findings, decisions and on the terminal.
 
-/// Squared errors below this, as shares, are as exact as recordings of four or five digits can show.
+/// Squared errors below this share count as exact, because recordings of four or five digits show no smaller ones.
 const EXACT: f64 = 1e-8;
 
-/// Larger shares say nothing more.
+/// Larger shares are not informative.
 const MOST_PERCENT: f64 = 10_000.0;
 
-/// Three significant digits.
+/// Formats three significant digits.
 pub fn short(value: f64) -> String {
     if value == 0.0 {
         return "0".to_owned();
@@ -23,12 +23,12 @@ pub fn short(value: f64) -> String {
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
 }
 
-/// A squared error as a share of what is predicted: three digits, or "exact".
+/// A squared error as a share of the predicted quantity: three digits, or "exact".
 pub fn squared_error(share: f64) -> String {
     if (0.0..EXACT).contains(&share) { "exact".to_owned() } else { short(share) }
 }
 
-/// A share in percent, to two digits: "0.5 %", "16 %".
+/// A share in per cent, with two digits: "0.5 %", "16 %".
 pub fn percent(share: f64) -> String {
     let percent = 100.0 * share;
     match percent.abs() {
@@ -40,7 +40,7 @@ pub fn percent(share: f64) -> String {
     }
 }
 
-/// An estimate of the share of a whole, which may exceed it, in percent.
+/// An estimated share of a whole, in per cent; the estimate may exceed the whole.
 pub fn percent_of_all(share: f64) -> String {
     percent(share.min(1.0))
 }

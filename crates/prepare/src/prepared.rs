@@ -8,21 +8,21 @@ use crate::{StateChannel, VelocitySource, remarks};
 /// Demonstrations ready for learning, with all decisions and findings.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Prepared {
-    /// Movements, states and velocities times the channels' scales.
+    /// Movements; states and velocities are multiplied by the channels' scales.
     pub demonstrations: Demonstrations,
     /// Name of each movement, (K).
     pub episodes: Vec<String>,
-    /// Label of the constraint of each movement, (K), where the file has one for all of its samples.
+    /// Constraint label of each movement, (K), if the file has one label for all of its samples.
     pub constraints: Vec<Option<String>>,
-    /// Dimensions of the state, n of them.
+    /// The n dimensions of the state.
     pub state: Vec<StateChannel>,
-    /// Dimensions of the context, p of them; empty where movements depend on the state alone.
+    /// The p dimensions of the context; empty if movements depend on the state alone.
     pub context: Vec<StateChannel>,
     /// Median time step in seconds.
     pub time_step: f64,
     /// Noise of positions and velocities.
     pub noise: Noise,
-    /// Where velocities come from.
+    /// Source of the velocities.
     pub velocities: VelocitySource,
     /// Requested smoothing, already applied to the demonstrations unless it is automatic.
     pub smoothing: Smoothing,
@@ -37,10 +37,10 @@ pub struct Prepared {
 }
 
 impl Prepared {
-    /// The same movements with every channel of the context times a further factor, (p).
+    /// The same movements with each context channel multiplied by a further factor, (p).
     ///
     /// # Errors
-    /// [`MotionError`] where a product is not finite.
+    /// [`MotionError`] if a product is not finite.
     pub fn with_context_scaled(&self, factors: &DVector<f64>) -> Result<Self, MotionError> {
         let scaled = |movement: &Trajectory| movement.clone().with_context(movement.context().component_mul(factors));
         let movements = self.demonstrations.trajectories().iter().map(scaled);
@@ -52,14 +52,14 @@ impl Prepared {
         })
     }
 
-    /// The same movements with every channel of the state times a further factor, (n), with the noise and the findings on units that
-    /// follow. The context stays as it is.
+    /// The same movements with each state channel multiplied by a further factor, (n); adjusts the noise and the findings on units.
+    /// The context is unchanged.
     ///
     /// # Errors
-    /// [`MotionError`] where a product is not finite.
+    /// [`MotionError`] if a product is not finite.
     ///
     /// # Panics
-    /// If there is not one factor for each channel.
+    /// If the number of factors differs from that of the channels.
     pub fn rescaled(&self, factors: &DVector<f64>) -> Result<Self, MotionError> {
         let movements = self.demonstrations.trajectories().iter().map(|movement| movement.scaled(factors));
         let demonstrations = Demonstrations::new(movements.collect::<Result<_, _>>()?)?;
@@ -72,7 +72,7 @@ impl Prepared {
             Smoothing::Auto | Smoothing::Off => {
                 Noise { velocity_share: anew.velocity_share.or(self.noise.velocity_share), ..anew }
             }
-            // Positions are smooth already: their noise is what was recorded, its share of the steps that before scaling.
+            // Positions are already smooth: their noise is that of the recording, its share of the steps is that before scaling.
             Smoothing::Samples(_) | Smoothing::Seconds(_) => {
                 let scaled =
                     |of: &Vec<f64>| of.iter().zip(factors).map(|(deviation, factor)| deviation * factor).collect();
@@ -83,7 +83,7 @@ impl Prepared {
                 }
             }
         };
-        // Where smoothing was requested, velocities that count as exact may be differences.
+        // If smoothing was requested, velocities that count as exact may be differences.
         let velocities = match self.velocities {
             VelocitySource::Recorded if self.smoothing == Smoothing::Auto => noise::of_recorded(&demonstrations),
             VelocitySource::Noisy(_) => noise::of_recorded(&demonstrations),

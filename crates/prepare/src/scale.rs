@@ -5,7 +5,7 @@ use crate::notes::Notes;
 use crate::options::PrepareOptions;
 use crate::{PrepareError, StateChannel};
 
-/// Factor of every channel, (n).
+/// Factor of each channel, (n).
 pub(crate) fn scales(
     channels: &[Channel],
     options: &PrepareOptions,
@@ -27,12 +27,12 @@ pub(crate) fn scales(
     Ok(scales)
 }
 
-/// The least and the largest of some values.
+/// The smallest and the largest of some values.
 pub(crate) fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
     values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)))
 }
 
-/// Names, units and ranges, in the user's units, of channels whose scaled values are given.
+/// Names, units and ranges of channels in the user's units, from their scaled values.
 pub(crate) fn channels(
     channels: &[Channel],
     scales: &DVector<f64>,

@@ -1,6 +1,6 @@
 use serde::{Deserialize, Serialize};
 
-/// Where velocities come from, for the learners.
+/// Source of the velocities, for the learners.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum VelocitySource {
     /// Exact velocities as recorded, with exact positions.
@@ -11,6 +11,6 @@ pub enum VelocitySource {
     Noisy(f64),
     /// Positions alone.
     Positions,
-    /// Positions alone, taken as they stand: smoothed as the user said, or not at all.
+    /// Positions alone, used as they are: smoothed as the user requested, or not at all.
     PositionsAsRequested,
 }

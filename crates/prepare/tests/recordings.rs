@@ -1,4 +1,4 @@
-//! What is decided and said before learning, one mistake at a time.
+//! Decisions and findings before learning, one mistake at a time.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
@@ -42,19 +42,19 @@ fn prepared(recordings: &Recordings) -> Prepared {
     prepare(recordings, &PrepareOptions::default()).unwrap()
 }
 
-/// The decision about something.
+/// The decision on a subject.
 fn decided<'a>(prepared: &'a Prepared, what: &str) -> &'a str {
     &prepared.decisions.iter().find(|decision| decision.what == what).unwrap().value
 }
 
-/// The finding that says these words.
+/// The verdict of the finding that contains these words.
 fn verdict(prepared: &Prepared, words: &str) -> Verdict {
     let found = prepared.findings.iter().find(|finding| finding.what.contains(words));
     found.unwrap_or_else(|| panic!("'{words}' is not in {:?}", prepared.findings)).verdict
 }
 
 proptest! {
-    /// A factor after preparing does what `--scale` does before, also to noise and to what is found about units.
+    /// A factor after preparation has the same effect as `--scale` before it, also on noise and on the findings on units.
     #[test]
     fn rescaling_is_what_the_option_does(factor in -9.0..9.0f64, noise in prop::sample::select(vec![0.0, 0.01])) {
         let factor = factor.exp();
@@ -71,7 +71,7 @@ proptest! {
         prop_assert_eq!(found.velocities, expected.velocities);
         prop_assert_eq!(&found.findings, &expected.findings);
         prop_assert_eq!(found.state[1].scale, factor);
-        // Smoothed positions have lost their noise, which is remembered.
+        // Smoothed positions have lost their noise, which is recorded separately.
         let smooth = |options: PrepareOptions| PrepareOptions { smoothing: Smoothing::Samples(9), ..options };
         let expected = prepare(&recordings, &smooth(options)).unwrap();
         let found = prepare(&recordings, &smooth(PrepareOptions::default())).unwrap();
@@ -111,7 +111,7 @@ fn nothing_is_said_of_good_recordings() {
 }
 
 proptest! {
-    /// Scales and units are the learner's alone: states times the scale, ranges as recorded.
+    /// The scale affects only the learner: states are multiplied by it, ranges stay as recorded.
     #[test]
     fn scale(factor in 0.01..100.0f64) {
         let options = PrepareOptions { scale: vec![("y".to_owned(), factor)], ..PrepareOptions::default() };
@@ -127,7 +127,7 @@ proptest! {
         }
     }
 
-    /// Velocities times anything are brought back to the steps' units, and it is said.
+    /// Velocities multiplied by any factor are converted back to the steps' units, and this is reported.
     #[test]
     fn velocities_in_other_units(factor in prop_oneof![2.0..5000.0f64, 1e-4..0.5f64, -5000.0..-0.001f64]) {
         let prepared = prepared(&changed(|episode| episode.velocities.iter_mut().for_each(|u| *u *= factor)));
@@ -183,7 +183,7 @@ fn velocities_that_are_none() {
     assert_eq!(verdict(&requested, what), Verdict::Doubtful);
 }
 
-/// Steps after exact positions are a map, and learnt from; other differences tell less than the positions do.
+/// Steps after exact positions are a map, and are learnt from; other differences contain less information than the positions.
 #[test]
 fn velocities_that_are_differences() {
     for ((before, after), expected) in
@@ -222,7 +222,7 @@ fn stamps() {
     let given = PrepareOptions { time_step: Some(STEP), ..PrepareOptions::default() };
     let fixed = prepare(&positions, &given).unwrap();
     assert_eq!((fixed.time_step, fixed.findings.len()), (STEP, 0));
-    // Half a percent of jitter is even; half a step is not.
+    // Half a per cent of jitter counts as even; half a step does not.
     let jitter = |share: f64| {
         prepared(&changed(|episode| {
             let stamps = episode.times.stamps();
@@ -260,7 +260,7 @@ fn what_is_left_out() {
         }
     }));
     assert_eq!((short.left_out[0].episode.as_str(), short.left_out[0].why.as_str()), ("e5", "only 1 sample"));
-    // Of a spike near the start, nothing before it is worth learning from, and the spike itself is not.
+    // With a spike near the start, the part before it is too short to learn from, and the spike itself is dropped.
     let spike = prepared(&changed(|episode| {
         if episode.name == "e2" {
             episode.positions.column_mut(2).add_scalar_mut(3.0);
@@ -273,7 +273,7 @@ fn what_is_left_out() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(16))]
 
-    /// A copied episode, wherever it stands and whatever it is called, changes nothing that is learnt from.
+    /// A copied episode, at any position and with any name, does not change the training data.
     #[test]
     fn a_copy_teaches_nothing(of in 0..12usize, to in 0..13usize, name in "[a-z]{1,8}") {
         let mut copied = recordings();
@@ -330,7 +330,7 @@ fn rest_at_the_ends_is_said_and_trimmed() {
 
 #[test]
 fn noise_as_large_as_the_movement_is_no_stand_still() {
-    // Numbers that look random, of which 4σ is more than their whole range.
+    // Pseudo-random numbers whose 4σ exceeds their range.
     let number = |i: usize| (i.wrapping_mul(2_654_435_761) >> 7) % 1000;
     let mut loud = recordings();
     loud.episodes.truncate(1);
@@ -369,7 +369,7 @@ fn a_jump_is_cut() {
     assert_eq!((&*jump.episodes[2], &*jump.episodes[3]), ("e2", "e2 from sample 15"));
     let lengths: Vec<_> = jump.demonstrations.trajectories()[2..4].iter().map(motion::Trajectory::n_samples).collect();
     assert_eq!(lengths, [15, 25]);
-    // One sample far off goes; what is before and after it stays.
+    // A single outlier is dropped; the samples before and after it stay.
     let spike = prepared(&changed(|episode| episode.positions.column_mut(20).add_scalar_mut(3.0)));
     assert_eq!(spike.episodes.len(), 24);
     assert_eq!(verdict(&spike, "12 of 12 episodes jump"), Verdict::Doubtful);
@@ -385,7 +385,7 @@ fn angles_that_wrap_go_on() {
                 let angle = 2.9 + 0.2 * start + 0.03 * i as f64;
                 episode.positions[(0, i)] = if wrapped { angle - turn * (angle / turn).round() } else { angle };
             }
-            // One that comes round to the other end fills the range.
+            // One that wraps to the other end fills the range.
             episode.positions[(0, 0)] = episode.positions[(0, 0)].clamp(-3.1, 3.1);
             episode.velocities = None;
         })
@@ -409,7 +409,7 @@ fn remarks() {
         episode.velocities = None;
     }));
     assert_eq!(verdict(&mixed, "channel y varies"), Verdict::Doubtful);
-    // The mean of equal numbers is another number.
+    // The mean of equal numbers may be another number.
     let constant = prepared(&changed(|episode| {
         episode.positions.row_mut(1).fill(0.1);
         episode.velocities = None;
@@ -467,7 +467,7 @@ fn smoothing_as_requested() {
         pairs.map(|(movement, episode)| (movement.states() - episode.positions).norm_squared()).sum::<f64>().sqrt()
     };
     assert!(off_by(&smoothed) < 0.3 * off_by(&off), "{} {}", off_by(&smoothed), off_by(&off));
-    // Recorded velocities stay, whatever becomes of the positions.
+    // Recorded velocities are unchanged, whatever happens to the positions.
     let with = smoothed_by(&recordings(), Smoothing::Samples(5)).unwrap();
     assert_eq!(with.velocities, VelocitySource::Recorded);
     assert_eq!(with.demonstrations.trajectories()[3].velocities(), recordings().episodes[3].velocities.as_ref());
@@ -489,7 +489,8 @@ fn what_looks_like_a_fault_may_stay() {
     assert_eq!(kept.demonstrations.trajectories()[0].states(), &spiked.episodes[0].positions);
 }
 
-/// Few samples of many channels may be rows taken for columns, or a recording of few samples, which are enough together.
+/// Few samples of many channels may be rows taken for columns, or a recording with few samples per episode, but enough in
+/// total.
 #[test]
 fn more_channels_than_samples_are_refused_or_doubtful() {
     let turned = |times: usize| {
@@ -517,7 +518,7 @@ fn more_channels_than_samples_are_refused_or_doubtful() {
     assert_eq!(verdict(&prepared(&turned(5)), what), Verdict::Doubtful);
 }
 
-/// A joint that is held shakes with the noise of its encoder; a slow drift three times as large is motion.
+/// A joint that is held still shows the noise of its encoder; a slow drift three times as large is motion.
 #[test]
 fn held_channels_are_named() {
     let words = "z is held: only noise changes there";
@@ -541,7 +542,7 @@ fn held_channels_are_named() {
     }
 }
 
-/// A channel that is held has velocities of noise alone: they are no mistake of units. Large ones are.
+/// A channel that is held still has velocities of noise alone, which are no mistake of units. Large ones are.
 #[test]
 fn velocities_of_a_held_channel_are_noise_or_do_not_belong_to_it() {
     let held = |size: f64, jitter: f64| {
@@ -590,7 +591,7 @@ fn what_cannot_be_learnt_from() {
     }
 }
 
-/// Twelve movements of these channels: positions and velocities of a movement at a time.
+/// Twelve movements of these channels: positions and velocities of a movement at each time.
 fn moving(names: &[&str], at: impl Fn(usize, f64) -> (DVector<f64>, DVector<f64>)) -> Recordings {
     let mut recordings = recordings();
     recordings.state = names.iter().map(|&name| Channel { name: name.to_owned(), unit: None }).collect();
@@ -609,7 +610,8 @@ fn says(prepared: &Prepared, words: &str) -> bool {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
-    /// A decaying movement across, and along n the same velocity everywhere, up to `sway` of it from one movement to the next.
+    /// A decaying movement across n; along n the velocity is the same everywhere, up to a share `sway` from one movement to
+    /// the next.
     #[test]
     fn a_press_is_found(angle in 0.1..1.4f64, push in 0.1..2.0f64, sway in 0.0..0.3f64, recorded in any::<bool>()) {
         let (n, across) = (DVector::from_vec(vec![angle.cos(), angle.sin()]), DVector::from_vec(vec![-angle.sin(), angle.cos()]));
@@ -632,7 +634,7 @@ proptest! {
         prop_assert!(!says(&self::prepared(&recordings()), words));
     }
 
-    /// x' = −2x, but not above the limit.
+    /// x' = −2x, limited in speed.
     #[test]
     fn a_speed_limit_is_found(limit in 0.3..0.9f64, noise in prop::sample::select(vec![0.0, 0.01]), recorded in any::<bool>()) {
         let of = |limit: f64| {
@@ -662,7 +664,7 @@ proptest! {
         prop_assert!(!says(&of(10.0), "largest speed"));
     }
 
-    /// Velocities written down later or earlier than positions: by how much is said.
+    /// Velocities recorded later or earlier than positions: the finding states the lag.
     #[test]
     fn a_lag_is_found(samples in prop_oneof![-6..-1isize, 2..7isize], rate in 1.0..3.0f64) {
         let recordings = moving(&["x", "y"], |k, t| {
@@ -681,7 +683,7 @@ proptest! {
         prop_assert!(says(&self::prepared(&late), &words), "{} not said", words);
     }
 
-    /// q and −q are one orientation: recordings with changes of sign are those without.
+    /// q and −q are one orientation: recordings with sign changes give the same result as without.
     #[test]
     fn signs_of_quaternions(flips in prop::collection::vec((1..12usize, 0..SAMPLES), 1..6)) {
         let plain = moving(&["x", "qx", "qy", "qz", "qw"], |k, t| {
@@ -711,7 +713,7 @@ proptest! {
         }
     }
 
-    /// Movements that end at so many places, however many of them there are.
+    /// The number of places at which movements end, whatever the number of movements.
     #[test]
     fn ends_are_counted(places in 1..6usize, near in 0.0..0.01f64) {
         let mut recordings = moving(&["x", "y"], |k, t| {
@@ -726,12 +728,12 @@ proptest! {
     }
 }
 
-/// As findings write numbers.
+/// Formats a number as findings do.
 fn prepare_numbers(value: f64) -> String {
     prepare::numbers::short(value)
 }
 
-/// Names of constraints that change within an episode tell switches, if each holds for a while.
+/// Names of constraints that change within an episode mark switches, if each lasts long enough.
 #[test]
 fn labels_tell_switches() {
     let labelled = |every: usize| {

@@ -1,4 +1,4 @@
-//! Estimates the noise of recorded positions and takes velocities from them.
+//! Estimates the noise of recorded positions and computes velocities from them.
 
 #![allow(clippy::print_stdout, reason = "a program")]
 

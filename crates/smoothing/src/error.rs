@@ -1,7 +1,7 @@
 use motion::MotionError;
 use thiserror::Error;
 
-/// Why movements could not be cleaned. All numbers count from 0.
+/// Reasons why movements cannot be cleaned. All numbers count from 0.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum SmoothingError {
@@ -10,15 +10,15 @@ pub enum SmoothingError {
     Parameter {
         /// Name of the field.
         name: &'static str,
-        /// The value given.
+        /// The given value.
         value: f64,
-        /// What the value must satisfy.
+        /// The condition that the value must satisfy.
         requirement: &'static str,
     },
-    /// No degree of the polynomials is named.
+    /// No degree of the polynomials was given.
     #[error("degrees is empty, so that no polynomial can be fitted; name one or more, 0 or 1 among them")]
     NoDegrees,
-    /// The movements themselves are not valid.
+    /// The movements themselves are invalid.
     #[error(transparent)]
     Motion(#[from] MotionError),
     /// The scale of an axis is missing or superfluous.
@@ -29,7 +29,7 @@ pub enum SmoothingError {
         /// Dimension of the state.
         expected: usize,
     },
-    /// No axis ever moves.
+    /// No axis moves.
     #[error("no dimension ever changes, so there is no movement to smooth; record one")]
     NoMotion,
     /// Squares of the coordinates leave the range of f64.
@@ -43,17 +43,17 @@ pub enum SmoothingError {
         /// The first trajectory without velocities.
         trajectory: usize,
     },
-    /// There are too few samples in a row to tell noise from movement.
+    /// There are too few consecutive samples to distinguish noise from movement.
     #[error("{found} third differences are too few to estimate noise, {needed} are needed; record more samples")]
     TooFewDifferences {
-        /// How many there are.
+        /// Number found.
         found: usize,
-        /// How many are needed.
+        /// Number needed.
         needed: usize,
     },
 }
 
-/// Refuses a parameter that is not `fine`.
+/// Refuses a parameter unless `fine`.
 pub(crate) fn require(
     fine: bool,
     name: &'static str,

@@ -11,12 +11,12 @@ use crate::kalman::Gains;
 /// Fuses noisy positions with nearly exact velocities: states that integrate the velocities and fit the positions, (S17).
 ///
 /// x_{i+1} = x_i + Δ_i + process noise q, y_i = x_i + noise ρ, with one Kalman filter for all dimensions and
-/// Rauch–Tung–Striebel smoothing. The rule for Δ_i and q/ρ are those of the highest likelihood.
+/// Rauch–Tung–Striebel smoothing. The rule for Δ_i and q/ρ have the highest likelihood.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Fusion {
-    /// Rules to choose from, at least one.
+    /// Candidate rules, at least one.
     pub rules: Vec<StepRule>,
-    /// log₁₀(q/ρ) to choose from, at least one.
+    /// Candidate values of log₁₀(q/ρ), at least one.
     pub log10_ratios: Vec<f64>,
 }
 
@@ -30,25 +30,25 @@ impl Default for Fusion {
     }
 }
 
-/// Movements whose positions and velocities were fused.
+/// Movements with fused positions and velocities.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fused {
     /// In the order of the demonstrations.
     pub movements: Vec<FusedMovement>,
-    /// The rule of the highest likelihood.
+    /// The rule with the highest likelihood.
     pub rule: StepRule,
-    /// Variance ρ of the positions' noise, in squared units of the state, the same in every dimension.
+    /// Noise variance ρ of the positions, in squared units of the state, the same in every dimension.
     pub noise_variance: f64,
-    /// log₁₀(q/ρ) of the highest likelihood.
+    /// log₁₀(q/ρ) with the highest likelihood.
     pub log10_ratio: f64,
 }
 
-/// One movement whose positions and velocities were fused.
+/// One movement with fused positions and velocities.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FusedMovement {
     /// States x̂, (n, N).
     pub states: DMatrix<f64>,
-    /// Their variance at each sample, (N), the same in every dimension.
+    /// Variance of the states at each sample, (N), the same in every dimension.
     pub variance: DVector<f64>,
 }
 
@@ -95,7 +95,7 @@ fn steps_of(movements: &[Trajectory], rule: StepRule) -> Vec<DMatrix<f64>> {
     movements.par_iter().filter_map(|movement| Some(rule.steps(movement, movement.velocities()?))).collect()
 }
 
-/// Filters every movement and goes back over it.
+/// Filters every movement forwards and smooths it backwards.
 fn smooth(movements: &[Trajectory], rule: StepRule, log10_ratio: f64, noise_variance: f64) -> Vec<FusedMovement> {
     let gains = Gains::new(longest(movements), 10f64.powf(log10_ratio));
     let smooth = |(movement, steps): (&Trajectory, DMatrix<f64>)| {
@@ -107,7 +107,7 @@ fn smooth(movements: &[Trajectory], rule: StepRule, log10_ratio: f64, noise_vari
     movements.par_iter().zip(steps_of(movements, rule)).map(smooth).collect()
 }
 
-/// The profile likelihood at one ratio, (S17).
+/// The profile likelihood for one ratio, (S17).
 struct Likelihood {
     log: f64,
     /// ρ = Σ (e²/S) / n.

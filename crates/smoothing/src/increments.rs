@@ -2,15 +2,15 @@ use motion::Trajectory;
 use nalgebra::{DMatrix, DMatrixView};
 use serde::Serialize;
 
-/// How a step Δ_i from one sample to the next follows from the velocities.
+/// Rules that compute a step Δ_i from one sample to the next from the velocities.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub enum StepRule {
-    /// v_i δt: the simulator's own, exact for commands that are held until the next sample.
+    /// v_i δt: the simulator's own rule, exact for commands that are held until the next sample.
     Euler,
-    /// The mean of both ends.
+    /// The mean of the velocities at both ends, times δt.
     Trapezoid,
     /// A cubic through four velocities, (−v_{i−1} + 13v_i + 13v_{i+1} − v_{i+2})/24 · δt; at the ends a parabola through
-    /// three, (5v_1 + 8v_2 − v_3)/12 · δt. Movements of two samples take the trapezoid.
+    /// three, (5v_1 + 8v_2 − v_3)/12 · δt. Movements of two samples use the trapezoid.
     Cubic,
 }
 

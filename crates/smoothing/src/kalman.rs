@@ -1,9 +1,9 @@
-//! One scalar Kalman filter for all dimensions, with the Rauch–Tung–Striebel pass back. Variances are in units of the
-//! positions' noise variance ρ.
+//! One scalar Kalman filter for all dimensions, with the backward pass of Rauch–Tung–Striebel. Variances are in units
+//! of the positions' noise variance ρ.
 
 use nalgebra::DMatrix;
 
-/// Variances and gains at every sample; they do not depend on the positions.
+/// Variances at every sample, which also give the gains; they do not depend on the positions.
 #[derive(Debug)]
 pub(crate) struct Gains {
     /// Variance of the state given samples up to i.
@@ -13,7 +13,7 @@ pub(crate) struct Gains {
 }
 
 impl Gains {
-    /// For `n_samples`, process noise `ratio` = q/ρ a step; the first sample is known to within the noise.
+    /// Variances for `n_samples`, with process noise `ratio` = q/ρ per step; the first sample is known up to the noise.
     pub(crate) fn new(n_samples: usize, ratio: f64) -> Self {
         let (mut filtered, mut predicted) = (vec![1.0], vec![f64::INFINITY]);
         for i in 1..n_samples {
@@ -24,12 +24,12 @@ impl Gains {
         Gains { filtered, predicted }
     }
 
-    /// Variance S_i of the innovation: what a sample differs from its prediction.
+    /// Variance S_i of the innovation, which is the difference between a sample and its prediction.
     pub(crate) fn innovation_variance(&self, sample: usize) -> f64 {
         self.predicted[sample] + 1.0
     }
 
-    /// Filters positions (n, N), `steps` (n, N − 1) predicted between them, into `states` (n, N), and calls
+    /// Filters positions (n, N), with `steps` (n, N − 1) predicted between them, into `states` (n, N). Calls
     /// `innovation` with every sample but the first and the square Σ_j e_ij² of its innovation.
     pub(crate) fn filter(
         &self,
@@ -51,7 +51,7 @@ impl Gains {
         }
     }
 
-    /// Goes back over filtered `states` (n, N) and leaves smoothed ones; returns their variances (N).
+    /// Smooths filtered `states` (n, N) in place, backwards; returns their variances (N).
     pub(crate) fn smooth(&self, steps: &DMatrix<f64>, states: &mut DMatrix<f64>) -> Vec<f64> {
         let last = states.ncols() - 1;
         let mut variance = self.filtered[..=last].to_vec();

@@ -7,7 +7,7 @@
 //! | positions with hardly any noise | [`slopes`], [`slopes_between_switches`] | velocities |
 //! | positions, for a rule that takes steps between them | [`SavitzkyGolay`] | a simple, fast polynomial filter |
 //!
-//! [`PositionNoise`] estimates whether any of them is needed. Nothing here knows a policy, so every learner may use it.
+//! [`PositionNoise`] estimates whether any of them is needed. Nothing here depends on a policy, so every learner may use it.
 //!
 //! ```
 //! use motion::Demonstrations;
@@ -29,8 +29,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Equations (S15)–(S17) stand in [section 8 of `docs/slope-gp.md`](../gp/equations/index.html#8-smoothing).
-//! Trajectories are smoothed in parallel, with the same bits at any number of threads. Times may be uneven:
+//! Equations (S15)–(S17) are in [section 8 of `docs/slope-gp.md`](../gp/equations/index.html#8-smoothing).
+//! Trajectories are smoothed in parallel, with the same bits for any number of threads. Times may be uneven:
 //! [`motion::Trajectory::stamped`].
 //!
 //! # When it fails
@@ -40,8 +40,8 @@
 //! - **Axes of very different noise**: give [`AxisScale::Given`], since one variance serves all scaled axes.
 //! - [`SmoothingError`]: no motion, missing velocities, too few samples, or overflow.
 //!
-//! To read the source: `smoother` has one line for each step; `scaled` prepares the input, `polynomials`, `windows` and
-//! `evidence` are (S15), `segmentation` is (S16), `averages` and `smoothed` form the result; `noise_by_evidence`
+//! To read the source: `smoother` has one line for each step; `scaled` prepares the input; `polynomials`, `windows` and
+//! `evidence` implement (S15), `segmentation` (S16); `averages` and `smoothed` form the result; `noise_by_evidence`
 //! estimates the noise. `fusion` chooses among the steps of `increments` and runs `kalman`.
 
 mod error;
@@ -63,7 +63,7 @@ pub use piecewise::smoother::{NoiseVariance, Smoother};
 pub use savitzky_golay::SavitzkyGolay;
 pub use slopes::{slopes, slopes_between_switches};
 
-/// The program of the README, compiled.
+/// Compiles the program in the README.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;

@@ -1,42 +1,41 @@
-//! Noise of recorded positions and velocities, without smoothing.
+//! Noise of recorded positions and velocities, estimated without smoothing.
 
 use motion::{Demonstrations, Trajectory, median};
 use nalgebra::{DMatrix, DVector};
 
 use crate::SmoothingError;
 
-/// Fewer third differences than this say too little.
+/// Least number of third differences for an estimate.
 const NEEDED: usize = 50;
 
-/// A median of absolute values times this is the standard deviation of a normal distribution.
+/// The standard deviation of a normal distribution is the median absolute value times this.
 const MEDIAN_TO_DEVIATION: f64 = 1.4826;
 
-/// Share of a variance that fifth differences find of white noise, at least: few of them may find less.
+/// Least share of a white noise's variance that fifth differences find; less if there are few of them.
 const WHITE: f64 = 0.5;
 
-/// How noisy recorded positions are.
+/// Noise of recorded positions.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PositionNoise {
     /// Standard deviation of the noise in each dimension, (n), in its unit.
     pub deviations: DVector<f64>,
-    /// Share of the squared steps that is noise: 2 Σ_j σ̂_j² / mean ‖x_{i+1} − x_i‖². 0: positions are exact, 1: nothing
-    /// but noise.
+    /// Share of the squared steps that is noise: 2 Σ_j σ̂_j² / mean ‖x_{i+1} − x_i‖². 0 means exact positions, 1 nothing but noise.
     pub step_share: f64,
 }
 
 impl PositionNoise {
-    /// By third differences, robust against movement and switching constraints:
-    /// σ̂_j = 1.4826 · median |x_{i+3} − 3x_{i+2} + 3x_{i+1} − x_i|_j / √20, over all trajectories together. Where stamps
-    /// are uneven, the four factors are those of the divided difference, their squares' sum still 20.
+    /// Estimates the noise by third differences, robustly against movement and switching constraints:
+    /// σ̂_j = 1.4826 · median |x_{i+3} − 3x_{i+2} + 3x_{i+1} − x_i|_j / √20, over all trajectories together. For uneven stamps,
+    /// the four factors are those of the divided difference; the sum of their squares is still 20.
     ///
     /// # Errors
-    /// [`SmoothingError::TooFewDifferences`] below 50 differences per dimension, [`SmoothingError::NoMotion`] if no
-    /// sample differs from the one before, [`SmoothingError::Overflow`].
+    /// [`SmoothingError::TooFewDifferences`] below 50 differences per dimension, [`SmoothingError::NoMotion`] if no sample differs from the
+    /// one before, [`SmoothingError::Overflow`].
     pub fn of(demonstrations: &Demonstrations) -> Result<Self, SmoothingError> {
         Self::of_series(demonstrations, Trajectory::states)
     }
 
-    /// Of what a trajectory holds for every sample, (n, N).
+    /// The noise of a series with one column per sample of a trajectory, (n, N).
     fn of_series(
         demonstrations: &Demonstrations,
         series: impl Fn(&Trajectory) -> &DMatrix<f64>,
@@ -66,29 +65,29 @@ impl PositionNoise {
     }
 }
 
-/// How noisy recorded velocities are.
+/// Noise of recorded velocities.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct VelocityNoise {
-    /// Variance of the noise of a velocity, summed over the axes, in squared units of the state per second.
+    /// Noise variance of a velocity, summed over the axes, in squared units of the state per second.
     pub variance: f64,
     /// Share of the mean |u|² that is noise.
     pub share: f64,
-    /// Whether fifth differences find it, too: of movement they find far less, unless it has few samples.
+    /// Whether fifth differences also find the noise. Movement contributes much less to them, unless it has few samples.
     pub white: bool,
 }
 
 impl VelocityNoise {
-    /// Share from which on it counts, and from which on it does if it is white.
+    /// Shares above which noise counts: in general, and if it is white.
     const COUNTS: f64 = 1e-3;
     const COUNTS_IF_WHITE: f64 = 1e-6;
 
-    /// Whether velocities count as exact: noise makes less than a thousandth of their squares, and is not white or makes less than a millionth.
+    /// Whether velocities count as exact: noise makes up less than a thousandth of their squares, or less than a millionth if it is white.
     pub fn is_negligible(&self) -> bool {
         self.share <= if self.white { Self::COUNTS_IF_WHITE } else { Self::COUNTS }
     }
 
-    /// By third differences of the velocities, as [`PositionNoise::of`] those of positions; none where some movement has no velocities, or
-    /// where they are too few, all the same or too large for an estimate.
+    /// Estimates the noise by third differences of the velocities, as [`PositionNoise::of`] does for positions. `None` if a movement has no
+    /// velocities, or if they are too few, constant or too large for an estimate.
     pub fn of(demonstrations: &Demonstrations) -> Option<Self> {
         if demonstrations.trajectories().iter().any(|trajectory| trajectory.velocities().is_none()) {
             return None;
@@ -104,7 +103,7 @@ impl VelocityNoise {
     }
 }
 
-/// Standard deviation of the noise in each dimension, (n), by differences of N samples, of order N − 1.
+/// Standard deviation of the noise in each dimension, (n), from differences of N samples, of order N − 1.
 fn deviations<const N: usize>(
     demonstrations: &Demonstrations,
     series: &impl Fn(&Trajectory) -> &DMatrix<f64>,
@@ -124,8 +123,8 @@ fn deviations<const N: usize>(
     }))
 }
 
-/// Absolute differences of N samples, of order N − 1, of one axis: for N = 4 |x_{i+3} − 3x_{i+2} + 3x_{i+1} − x_i|; `rows` holds x_ij
-/// at `i * dim + j`. The factors are those of divided differences, which vanish on polynomials of lower order.
+/// Absolute differences of N samples, of order N − 1, for one axis: for N = 4 |x_{i+3} − 3x_{i+2} + 3x_{i+1} − x_i|; `rows` holds x_ij at
+/// `i * dim + j`. The factors are those of divided differences, which vanish for polynomials of lower order.
 pub(crate) fn differences<'a, const N: usize>(
     rows: &'a [f64],
     dim: usize,
@@ -137,12 +136,12 @@ pub(crate) fn differences<'a, const N: usize>(
     let windows = (rows.len() / dim + 1).saturating_sub(N);
     (0..windows).map(move |first| {
         let factors = times.map_or(even, |times| divided_difference(std::array::from_fn(|k| times[first + k])));
-        // Differences first, so that what the samples share is not rounded.
+        // Differences are taken first, so that a common offset of the samples causes no rounding errors.
         (1..N).map(|k| factors[k] * (x(first + k) - x(first))).sum::<f64>().abs()
     })
 }
 
-/// Factors c_k ∝ 1/Π_{j ≠ k}(t_k − t_j), with Σ c_k² as on even stamps.
+/// Factors c_k ∝ 1/Π_{j ≠ k}(t_k − t_j), with the same Σ c_k² as for even stamps.
 fn divided_difference<const N: usize>(times: [f64; N]) -> [f64; N] {
     let span = times[N - 1] - times[0];
     let product = |k: usize| (0..N).filter(|&j| j != k).map(|j| (times[k] - times[j]) / span).product::<f64>();
@@ -151,7 +150,7 @@ fn divided_difference<const N: usize>(times: [f64; N]) -> [f64; N] {
     factors.map(|factor| factor / norm)
 }
 
-/// Squares of the factors of N even samples, summed: 20 for N = 4.
+/// Sum of the squared factors for N even samples: 20 for N = 4.
 fn squares<const N: usize>() -> f64 {
     let binomial = |k: usize| (1..=k).map(|i| (N - i) as f64 / i as f64).product::<f64>();
     (0..N).map(|k| binomial(k).powi(2)).sum()

@@ -5,13 +5,13 @@ use crate::SmoothingError;
 use crate::error::require;
 use crate::piecewise::polynomials::Polynomials;
 
-/// Savitzky–Golay filter: replaces each sample by the value of the polynomial that fits its neighbours best.
+/// Savitzky–Golay filter: replaces each sample by the value of the polynomial that best fits its neighbours.
 ///
-/// Smooths positions before steps are taken between them. Its slope is no good velocity: it is blunt at the ends and
-/// where constraints switch ([`Smoother`](crate::Smoother) is made for that).
+/// It smooths positions before steps between them are computed. Its slope is a poor estimate of velocity at the ends
+/// and where constraints switch; use [`Smoother`](crate::Smoother) for that.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct SavitzkyGolay {
-    /// Samples in a window, odd and more than the degree; shorter trajectories are one window.
+    /// Number of samples in a window, odd and larger than the degree; shorter trajectories are one window.
     pub window: usize,
     /// Degree of the polynomials.
     pub degree: usize,
@@ -25,8 +25,8 @@ impl Default for SavitzkyGolay {
 }
 
 impl SavitzkyGolay {
-    /// The same movements with smoothed states; half a window at each end follows the polynomial of the whole window
-    /// there. Recorded velocities stay.
+    /// The same movements with smoothed states. The half window at each end follows the polynomial of the whole
+    /// window there. Recorded velocities are unchanged.
     ///
     /// # Errors
     /// [`SmoothingError::Parameter`], or [`SmoothingError::Motion`] if a smoothed state overflows.
@@ -68,7 +68,7 @@ impl SavitzkyGolay {
     }
 }
 
-/// Weights of the samples of a window, (window), for the value at its sample i: Q Q_iᵀ.
+/// Weights of a window's samples, (window), for the value at its sample i: Q Q_iᵀ.
 fn weigh(q: &Polynomials, i: usize, weights: &mut DVector<f64>) {
     for (j, weight) in weights.iter_mut().enumerate() {
         *weight = q.values(j).iter().zip(q.values(i)).map(|(a, b)| a * b).sum();

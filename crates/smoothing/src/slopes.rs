@@ -3,24 +3,25 @@
 use motion::Trajectory;
 use nalgebra::DMatrix;
 
-/// Share of the squared bend of a polynomial about a sample below which one beside it does not hold the switch that it holds: its
-/// errors by curvature are six times larger at most.
+/// A neighbouring polynomial is free of a switch if its squared bend is below this share of that of the polynomial centred at the
+/// sample. Its curvature errors are at most six times larger.
 const JUMP: f64 = 0.01;
 
-/// At every sample the slope, in positions per second, of the polynomial through it and the samples nearest to it, so many in all:
-/// at least two, and at most all of the movement; (n, N).
+/// The slope at every sample, in positions per second, of the polynomial through the `points` samples nearest to it, at least two
+/// and at most all of the movement; (n, N).
 ///
-/// Exact for polynomials of a degree below that number, at any times. Nothing is smoothed. Time is O(N (p² + n p)) for p points.
+/// Exact for polynomials of a degree below that number, at any times. Nothing is smoothed. The time is O(N (p² + n p)) for p
+/// points.
 pub fn slopes(movement: &Trajectory, points: usize) -> DMatrix<f64> {
     Polynomials::new(movement, points).slopes(|nearest, _| nearest)
 }
 
-/// As [`slopes`], (n, N), in positions per second; where the velocity jumps among those samples, of the polynomial through as many
-/// before or after the jump.
+/// As [`slopes`], (n, N), in positions per second. If the velocity jumps among those samples, the polynomial passes through as
+/// many samples before or after the jump instead.
 pub fn slopes_between_switches(movement: &Trajectory, points: usize) -> DMatrix<f64> {
     let polynomials = Polynomials::new(movement, points);
     let (points, last) = (polynomials.points, movement.n_samples() - polynomials.points);
-    // Highest divided difference of the samples from each on: large where the velocity jumps.
+    // Squared highest divided difference of the samples from each on: large where the velocity jumps.
     let bends = polynomials.squared_bends();
     polynomials.slopes(|nearest, sample| {
         let beside = nearest.saturating_sub(points / 2)..=(nearest + points / 2).min(last);
@@ -30,7 +31,7 @@ pub fn slopes_between_switches(movement: &Trajectory, points: usize) -> DMatrix<
     })
 }
 
-/// Polynomials through so many samples in a row.
+/// Polynomials through `points` consecutive samples.
 struct Polynomials<'a> {
     movement: &'a Trajectory,
     points: usize,
@@ -47,14 +48,14 @@ impl Polynomials<'_> {
         &self.movement.states().as_slice()[sample * dim..(sample + 1) * dim]
     }
 
-    /// Seconds from the first of the samples to each.
+    /// Seconds from sample `first` to each of the samples.
     fn times(&self, first: usize, times: &mut [f64]) {
         for (k, time) in times.iter_mut().enumerate() {
             *time = self.movement.seconds(first, first + k);
         }
     }
 
-    /// Of the samples from each on, as the square of the highest divided difference.
+    /// Squared bend of the polynomial through the samples from each on, measured by the highest divided difference.
     fn squared_bends(&self) -> Vec<f64> {
         let (mut times, mut weights) = (vec![0.0; self.points], vec![0.0; self.points]);
         let bend = |first: usize| {
@@ -72,7 +73,7 @@ impl Polynomials<'_> {
         (0..=self.movement.n_samples() - self.points).map(bend).collect()
     }
 
-    /// `choice` tells the first of the samples that a slope is taken from, by the first of the nearest ones and the sample.
+    /// `choice` returns the first sample of the polynomial, given the first of the nearest samples and the sample itself.
     fn slopes(&self, choice: impl Fn(usize, usize) -> usize) -> DMatrix<f64> {
         let (dim, count) = (self.movement.dim(), self.movement.n_samples());
         let mut slopes = DMatrix::zeros(dim, count);
@@ -83,7 +84,7 @@ impl Polynomials<'_> {
             self.times(first, &mut times);
             let own = sample - first;
             let now = times[own];
-            // Weights of Lagrange's polynomials, differentiated at one of their points.
+            // Weights of the Lagrange polynomials, differentiated at one of their points.
             for k in (0..self.points).filter(|&k| k != own) {
                 let others = times.iter().enumerate().filter(|&(j, _)| j != k && j != own);
                 let share = |(_, time): (usize, &f64)| (now - time) / (times[k] - time);
@@ -103,13 +104,13 @@ mod tests {
 
     use super::*;
 
-    /// Of samples so far apart.
+    /// Times of samples with these steps.
     fn times(steps: &[f64]) -> Vec<f64> {
         (0..=steps.len()).map(|count| steps[..count].iter().sum()).collect()
     }
 
     proptest! {
-        /// Where two movements of the third degree meet, slopes are those of one of both where they meet, and exact elsewhere.
+        /// Where two cubic movements meet, slopes equal those of either one; elsewhere they are exact.
         #[test]
         fn slopes_about_a_switch_are_exact(
             before in prop::array::uniform3(-2.0..2.0f64),
@@ -133,7 +134,7 @@ mod tests {
             }
         }
 
-        /// Slopes of polynomials through all their points are exact at any times, and of fewer samples those of lower degrees.
+        /// Slopes of polynomials are exact at any times through all points, and with fewer samples for lower degrees.
         #[test]
         fn slopes_of_polynomials_are_exact(
             coefficients in prop::array::uniform5(-2.0..2.0f64),

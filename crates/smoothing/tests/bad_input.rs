@@ -1,4 +1,4 @@
-//! What cannot be smoothed is refused, case by case.
+//! Invalid input is refused, case by case.
 
 use motion::{Demonstrations, Trajectory};
 use nalgebra::{DMatrix, DVector};
@@ -92,7 +92,7 @@ fn parameters_of_fusion_and_filter() {
     }
 }
 
-/// The shortest movements that there are go through.
+/// The shortest possible movements are accepted.
 #[test]
 fn two_samples() {
     let states = DMatrix::from_row_slice(1, 2, &[0.0, 1.0]);

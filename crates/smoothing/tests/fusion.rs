@@ -1,4 +1,4 @@
-//! Fusion beside a dense least-squares solution, and what it must find by itself.
+//! Compares fusion with a dense least-squares solution, and checks its estimates.
 
 use motion::{Demonstrations, Trajectory};
 use nalgebra::{DMatrix, DVector};
@@ -9,7 +9,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 use smoothing::{Fused, Fusion, StepRule};
 
-/// Steps by the formulas as they are printed.
+/// Steps by the printed formulas.
 fn steps(rule: StepRule, times: &[f64], v: &DMatrix<f64>) -> DMatrix<f64> {
     let n = v.ncols();
     DMatrix::from_fn(v.nrows(), n - 1, |j, i| {
@@ -25,8 +25,8 @@ fn steps(rule: StepRule, times: &[f64], v: &DMatrix<f64>) -> DMatrix<f64> {
     })
 }
 
-/// The most likely states given all positions, their variances in units of ρ, and the log likelihood of the steps that
-/// the positions took (the first position says nothing of itself), all by dense matrices.
+/// The most likely states given all positions, their variances in units of ρ, and the log likelihood of the observed
+/// steps (the first position alone contains no information), all by dense matrices.
 fn literal(y: &DMatrix<f64>, steps: &DMatrix<f64>, ratio: f64) -> (DMatrix<f64>, DVector<f64>, f64, f64) {
     let n = y.ncols();
     let mut information = DMatrix::identity(n, n);
@@ -91,7 +91,7 @@ impl Case {
 }
 
 proptest! {
-    /// The filter and its pass back are the dense solution; ρ is the mean square beyond the foreseen.
+    /// The filter with its backward pass equals the dense solution; ρ is the mean squared innovation.
     #[test]
     fn the_filter_is_least_squares(case in case(), rule in rules(), log10_ratio in -3.0..2.0f64) {
         let fusion = Fusion { rules: vec![rule], log10_ratios: vec![log10_ratio] };
@@ -104,7 +104,7 @@ proptest! {
         prop_assert!((&fused.movements[0].variance - variances * rho).amax() <= 1e-9 * rho);
     }
 
-    /// Of all rules and ratios the one of the highest profile likelihood is taken, over all movements together.
+    /// Among all rules and ratios, the one with the highest profile likelihood over all movements together is used.
     #[test]
     fn the_likeliest_rule_and_ratio_are_taken(cases in (1..3usize).prop_flat_map(|k| vec(case(), k))) {
         let dim = cases[0].positions.nrows();
@@ -129,7 +129,7 @@ proptest! {
     }
 }
 
-/// A circle run through at unit speed, `n` samples `step` seconds apart, by exact or Euler steps, with noise.
+/// A circle traversed at unit speed: `n` samples, `step` seconds apart, by exact or Euler steps, with noise.
 fn circle(n: usize, step: f64, euler: bool, noise: f64, seed: u64) -> (Demonstrations, DMatrix<f64>) {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let angle = |i: usize| i as f64 * step;
@@ -159,7 +159,7 @@ fn the_rule_that_made_the_movement_is_found_and_noise_falls() {
             assert_eq!(fused.rule, rule);
             let deviation = fused.noise_variance.sqrt();
             assert!((deviation / 0.01 - 1.0).abs() < 0.2, "{deviation}");
-            // Only where the movement began is unknown: √100 times less noise, within the luck of two numbers.
+            // Only the start of the movement is unknown: noise is reduced by √100, up to the randomness of two numbers.
             assert!(error(&fused, &truth) < 3e-3, "{}", error(&fused, &truth));
         }
     }

@@ -1,4 +1,4 @@
-//! Movements as another program smoothed and fused them; see `golden/README.md`.
+//! Compares with movements smoothed and fused by another program; see `golden/README.md`.
 
 use motion::{Demonstrations, Trajectory};
 use nalgebra::{DMatrix, DVector};

@@ -9,7 +9,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 use smoothing::{PositionNoise, VelocityNoise};
 
-/// Every formula in turn: all differences, sorted, the middle one; all steps.
+/// The literal formulas: the median of all sorted differences; the mean of all steps.
 fn literal(demonstrations: &Demonstrations) -> (Vec<f64>, f64) {
     let mut steps = Vec::new();
     let mut differences = vec![Vec::new(); demonstrations.dim()];
@@ -67,7 +67,7 @@ proptest! {
         prop_assert!((noise.step_share - share).abs() <= 1e-12 * share);
     }
 
-    /// A parabola added to every movement changes no estimate, units carry over.
+    /// Adding a parabola to every movement changes no estimate; estimates scale with the units.
     #[test]
     fn parabolas_are_no_noise(movements in movements(), factors in vec(-1.0..1.0f64, 3), unit in 0.01..100.0f64) {
         let curved = movements.iter().map(|x| {
@@ -83,7 +83,7 @@ proptest! {
     }
 }
 
-/// Smooth movements whose direction jumps every 20 samples, with noise known per dimension: found within 15 %.
+/// Smooth movements whose direction jumps every 20 samples, with known noise per dimension: it is found within 15 %.
 #[test]
 fn noise_is_found_beside_movement_and_switches() {
     let truth = DVector::from_vec(vec![0.002, 0.03]);
@@ -106,7 +106,7 @@ fn noise_is_found_beside_movement_and_switches() {
     }
 }
 
-/// Stamps make no noise: a parabola sampled unevenly is exact, and white noise on it is seen as it is.
+/// Uneven stamps are not noise: an unevenly sampled parabola is exact, and white noise on it is estimated correctly.
 #[test]
 fn uneven_stamps_are_no_noise() {
     let mut rng = ChaCha8Rng::seed_from_u64(3);
@@ -123,7 +123,7 @@ fn uneven_stamps_are_no_noise() {
 }
 
 proptest! {
-    /// White noise of a known size on velocities that hardly turn is found, and without velocities there is nothing to find.
+    /// White noise of known size is found on velocities that hardly change direction; without velocities there is no estimate.
     #[test]
     fn noise_of_velocities_is_found(seed in any::<u64>(), deviation in 0.01..1.0f64, dim in 1..4usize) {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
@@ -144,8 +144,8 @@ proptest! {
 }
 
 proptest! {
-    /// Noise of a thousandth of the velocities counts, and what third differences find of movement alone does not, as long as a turn has
-    /// ten samples; with fewer it looks like noise.
+    /// Noise of a thousandth of the velocities counts. Movement alone, as seen by third differences, does not count if a revolution has
+    /// at least ten samples; with fewer it looks like noise.
     #[test]
     fn movement_is_not_white(
         seed in any::<u64>(),
@@ -168,7 +168,7 @@ proptest! {
         let (clean, noisy) = (found(clean), found(noisy));
         prop_assert!(!clean.white, "{clean:?}");
         let expected = dim as f64 * deviation * deviation;
-        // Of fast turns more is found than is noise.
+        // With fast rotation, the estimate exceeds the noise.
         prop_assert!(noisy.variance > 0.7 * expected, "{noisy:?} for {expected}");
         if noisy.variance < 1.3 * expected {
             prop_assert!(noisy.white && !noisy.is_negligible(), "{noisy:?}");

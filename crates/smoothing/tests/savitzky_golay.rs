@@ -1,4 +1,4 @@
-//! Savitzky–Golay beside least squares and printed coefficients.
+//! Compares Savitzky–Golay with least squares and printed coefficients.
 
 use motion::{Demonstrations, Trajectory};
 use nalgebra::{DMatrix, DVector};
@@ -6,7 +6,7 @@ use proptest::collection::vec;
 use proptest::prelude::*;
 use smoothing::SavitzkyGolay;
 
-/// The value at `at` of the polynomial that fits all columns of `around` best.
+/// The value at `at` of the polynomial that best fits all columns of `around`.
 fn fitted(around: &DMatrix<f64>, at: usize, degree: usize) -> DVector<f64> {
     let n = around.ncols();
     let power = |i: usize, k: usize| ((i as f64 - at as f64) / n as f64).powf(k as f64);
@@ -36,7 +36,7 @@ proptest! {
         }
     }
 
-    /// Polynomials of its degree pass, up to both ends; velocities and time step stay as recorded.
+    /// Polynomials of the filter's degree are unchanged, up to both ends; velocities and time step are kept.
     #[test]
     fn polynomials_pass(filter in settings(), n in 2..40usize, factors in vec(-1.0..1.0f64, 4), step in 0.01..2.0f64) {
         let value = |i: usize| (0..=filter.degree).map(|k| factors[k] * (i as f64 / 10.0).powf(k as f64)).sum::<f64>();
@@ -51,7 +51,7 @@ proptest! {
     }
 }
 
-/// The weights of nine samples and degree 2, as tables print them: (−21 14 39 54 59 54 39 14 −21)/231.
+/// The weights for nine samples and degree 2 from printed tables: (−21 14 39 54 59 54 39 14 −21)/231.
 #[test]
 fn printed_weights() {
     let weights = [-21.0, 14.0, 39.0, 54.0, 59.0, 54.0, 39.0, 14.0, -21.0];
@@ -63,7 +63,7 @@ fn printed_weights() {
     }
 }
 
-/// Nearly all windows are the whole movement; the weights of all its samples at once would take 3 GB.
+/// Nearly all windows contain the whole movement; the weights of all its samples at once would take 3 GB.
 #[test]
 fn a_window_may_be_as_long_as_a_long_movement() {
     let n = 20_001;
@@ -74,7 +74,7 @@ fn a_window_may_be_as_long_as_a_long_movement() {
 }
 
 proptest! {
-    /// Polynomials of its degree pass at any stamps; on even ones nothing changes.
+    /// Polynomials of the filter's degree are unchanged with any stamps; even stamps have no effect.
     #[test]
     fn polynomials_pass_at_uneven_stamps(
         filter in settings(), gaps in vec(0.2..2.0f64, 1..39), factors in vec(-1.0..1.0f64, 4),

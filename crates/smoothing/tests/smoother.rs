@@ -1,4 +1,4 @@
-//! The smoother beside its literal reading, and what must not change it.
+//! Compares the smoother with its literal definition, and checks invariances.
 
 use crate::literal;
 use motion::{Demonstrations, Trajectory};
@@ -26,7 +26,7 @@ impl Case {
         self.smoother.smooth(&self.movements()).unwrap()
     }
 
-    /// The same with other states and times.
+    /// The case with other states and times.
     fn with(&self, states: impl Fn(&DMatrix<f64>) -> DMatrix<f64>, times: impl Fn(f64) -> f64) -> Case {
         Case {
             times: self.times.clone().map(|all| all.into_iter().map(&times).collect()),
@@ -91,7 +91,7 @@ fn series(smoothed: &Smoothed) -> impl Iterator<Item = [Vec<f64>; 5]> + '_ {
     })
 }
 
-/// All series agree, each to `tolerance` of its largest number, after ours were multiplied by `factors`.
+/// Checks that all series agree, each to `tolerance` of its largest number, after multiplying ours by `factors`.
 fn same(ours: &Smoothed, theirs: &Smoothed, factors: [f64; 5], tolerance: f64) -> Result<(), TestCaseError> {
     for (ours, theirs) in series(ours).zip(series(theirs)) {
         for (which, ((ours, theirs), factor)) in ours.iter().zip(&theirs).zip(factors).enumerate() {
@@ -111,8 +111,8 @@ fn same(ours: &Smoothed, theirs: &Smoothed, factors: [f64; 5], tolerance: f64) -
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(40))]
 
-    /// Forward–backward sums, shrunk coefficients and running variances are what all cuts say, each with a dense
-    /// covariance.
+    /// Forward–backward sums, shrunk coefficients and running variances equal the sums over all segmentations, each
+    /// with a dense covariance.
     #[test]
     fn all_cuts_are_weighed(case in cases(3..9)) {
         let smoothed = case.smooth();
@@ -143,7 +143,7 @@ proptest! {
         }
     }
 
-    /// Other units: states and velocities follow, probabilities stay.
+    /// In other units, states and velocities scale, and probabilities are unchanged.
     #[test]
     fn units_do_not_matter(case in cases(5..25), length in 0.01..100.0f64, time in 0.01..100.0f64, at in -5.0..5.0f64) {
         let other = case.with(|x| x * length, |t| (t + at) * time).with_noise(case.noise_variance * length * length);
@@ -152,7 +152,7 @@ proptest! {
         same(&case.smooth(), &other.smooth(), factors, 1e-7)?;
     }
 
-    /// A turn of the state space and a shift turn and shift what comes out, as long as axes are not scaled apart.
+    /// A rotation and a shift of the state space rotate and shift the result, if axes are not scaled separately.
     #[test]
     fn turned_and_shifted(case in cases(5..25), turn in vec(-1.0..1.0f64, 9), shift in vec(-2.0..2.0f64, 3)) {
         let dim = case.states[0].nrows();
@@ -168,11 +168,11 @@ proptest! {
             movement.states = moved(&movement.states);
             movement.velocities = &turn * &movement.velocities;
         }
-        // About one mean a variance loses nothing, but the prior's c does not change either.
+        // The variance about the mean is not affected by the shift, and the prior's c does not change either.
         same(&case.with(moved, |t| t).smooth(), &expected, [1.0; 5], 1e-7)?;
     }
 
-    /// Run backwards, a movement is smoothed the same, backwards.
+    /// Smoothing a reversed movement gives the reversed result.
     #[test]
     fn time_has_no_direction(case in cases(5..25)) {
         let backwards = |x: &DMatrix<f64>| DMatrix::from_columns(&x.column_iter().rev().collect::<Vec<_>>());
@@ -185,7 +185,7 @@ proptest! {
         }
     }
 
-    /// Even samples are smoothed the same whether their stamps are given or not; every axis divided by its deviation.
+    /// Evenly spaced samples are smoothed alike with and without stamps; every axis is divided by its deviation.
     #[test]
     fn stamps_of_even_samples_may_be_left_out(case in cases(5..25), step in 0.01..3.0f64) {
         let smoother = Smoother { axis_scale: AxisScale::StandardDeviation, ..case.smoother.clone() };
@@ -198,7 +198,8 @@ proptest! {
         same(&even, &stamped, [1.0; 5], 1e-6)?;
     }
 
-    /// Divided by their deviations, axes of any unit give the same; a dimension that never changes is left out.
+    /// Axes in any unit give the same result if divided by their deviations; a dimension that never changes is left
+    /// out.
     #[test]
     fn axes_of_other_units(case in cases(5..25), units in vec(0.01..100.0f64, 3), still in -2.0..2.0f64) {
         let dim = case.states[0].nrows();

@@ -1,8 +1,8 @@
-//! Text of unknown origin, made safe to print: names of channels, units and files come with recordings, which need
-//! not be trusted.
+//! Makes text of unknown origin safe to print: names of channels, units and files come from recordings, which may
+//! be untrusted.
 //!
 //! - [`plain`]: for a terminal, a drawing or a comment.
-//! - [`quoted`]: a path in a command that is proposed.
+//! - [`quoted`]: a path in a suggested command.
 //! - [`three_lines`]: an error.
 //!
 //! ```
@@ -20,7 +20,7 @@ pub use plain::{is_hidden, plain};
 pub use quoted::quoted;
 pub use three_lines::three_lines;
 
-/// The program of the README, compiled.
+/// Compiles the program in the README.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;

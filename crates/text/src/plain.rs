@@ -1,8 +1,8 @@
 use std::borrow::Cow;
 
-/// Text in which every character is visible. What moves the cursor of a terminal or changes its state, what turns the
-/// direction of writing, what has no width and what XML does not allow is spelt out, as `\u{1b}`; ends of lines and tabs
-/// stay, and so do joiners and selectors of emoji and of writing systems that need them, where those change what is seen.
+/// Text in which every character is visible. Characters that move the cursor of a terminal or change its state, change
+/// the writing direction, have no width or are not allowed in XML are escaped, as `\u{1b}`. Line ends and tabs are kept,
+/// and so are joiners and selectors of emoji and of writing systems that need them, if they change the appearance.
 pub fn plain(text: &str) -> Cow<'_, str> {
     let is_lost = |(at, c): (usize, char)| is_hidden(c) || is_joiner(c) && joins_nothing(text, at, c);
     if !text.char_indices().any(is_lost) {
@@ -19,13 +19,13 @@ pub fn plain(text: &str) -> Cow<'_, str> {
     Cow::Owned(spelt)
 }
 
-/// Whether [`plain`] spells a character out wherever it stands.
+/// Whether [`plain`] escapes a character regardless of its place.
 pub fn is_hidden(c: char) -> bool {
     (c.is_control() && !matches!(c, '\n' | '\t')) || is_ignorable(c) && !is_joiner(c) || is_no_character(c)
 }
 
-/// What is drawn as nothing: Unicode's default ignorable code points, assigned or not; and separators of lines and other
-/// characters of format (Cf, Zl, Zp) without a form of their own.
+/// Invisible characters: Unicode's default ignorable code points, assigned or not; and line separators and other format
+/// characters (Cf, Zl, Zp) without a visible form.
 fn is_ignorable(c: char) -> bool {
     matches!(c,
         '\u{ad}' | '\u{34f}' | '\u{61c}' | '\u{115f}' | '\u{1160}' | '\u{17b4}' | '\u{17b5}' | '\u{180b}'..='\u{180f}'
@@ -34,20 +34,20 @@ fn is_ignorable(c: char) -> bool {
         | '\u{1bca0}'..='\u{1bca3}' | '\u{1d173}'..='\u{1d17a}' | '\u{e0000}'..='\u{e0fff}')
 }
 
-/// Code points that will never be characters, the last two of every plane among them.
+/// Code points that will never be characters, including the last two of every plane.
 fn is_no_character(c: char) -> bool {
     matches!(c, '\u{fdd0}'..='\u{fdef}') || u32::from(c) & 0xfffe == 0xfffe
 }
 
-/// Without width as well, but they can change how what is beside them looks.
+/// Joiners and selectors have no width either, but can change the appearance of adjacent characters.
 fn is_joiner(c: char) -> bool {
     matches!(c, '\u{200c}' | '\u{200d}' | '\u{fe0e}' | '\u{fe0f}')
 }
 
-/// Whether a joiner, at this byte of a text, is where it cannot be seen either.
+/// Whether a joiner, at this byte of a text, has no visible effect at its place.
 fn joins_nothing(text: &str, at: usize, c: char) -> bool {
     let (before, after) = (&text[..at], text[at + c.len_utf8()..].chars().next());
-    // An emoji may have a selector before it is joined to the next.
+    // An emoji may be followed by a selector before it is joined to the next.
     let joins = |is: fn(char) -> bool, before: &str| before.ends_with(is) && after.is_some_and(is);
     match c {
         '\u{200c}' => !joins(is_cursive, before),
@@ -56,12 +56,12 @@ fn joins_nothing(text: &str, at: usize, c: char) -> bool {
     }
 }
 
-/// Letters and marks of blocks in which these change with their neighbours: Arabic to Sinhala, and Mongolian.
+/// Letters and marks of blocks whose shapes depend on their neighbours: Arabic to Sinhala, and Mongolian.
 fn is_cursive(c: char) -> bool {
     matches!(c, '\u{600}'..='\u{dff}' | '\u{1800}'..='\u{18af}') && !is_ignorable(c)
 }
 
-/// Symbols of blocks with emoji, and the tones of skin after them.
+/// Symbols of blocks with emoji, and the skin tones that follow them.
 fn is_emoji(c: char) -> bool {
     matches!(c, '\u{2190}'..='\u{2bff}' | '\u{1f000}'..='\u{1faff}')
 }
@@ -98,12 +98,12 @@ mod tests {
         assert_eq!(plain("👩\u{fe0f}\u{fe0f}"), "👩\u{fe0f}\\u{fe0f}");
     }
 
-    /// Of these categories some have a form of their own: signs before numbers.
+    /// Some characters of these categories have a visible form: signs before numbers.
     const HIDDEN: &str = r"[\p{Cc}\p{Cf}\p{Zl}\p{Zp}\p{Default_Ignorable_Code_Point}\p{Noncharacter_Code_Point}--\p{Prepended_Concatenation_Mark}\n\t]{100}";
     const VISIBLE: &str = r"[\p{L}\p{M}\p{N}\p{P}\p{S}\p{Zs}\p{Co}--\p{Default_Ignorable_Code_Point}]{100}";
 
     proptest! {
-        /// As many strings as there are cases hold nearly every character of the categories.
+        /// The strings of all cases together contain nearly every character of the categories.
         #[test]
         fn every_hidden_character_is_spelt_out(hidden in HIDDEN) {
             for c in hidden.chars() {

@@ -3,13 +3,13 @@ use std::path::Path;
 
 use crate::is_hidden;
 
-/// A path as one would type it in a shell; in quotes where they are needed. Names with characters that
-/// cannot be seen, or that are not UTF-8, are written in the `$'…'` of bash, zsh and ksh.
+/// A path as typed in a shell, in quotes if necessary. Names with invisible characters, or that are
+/// not UTF-8, are written in the `$'…'` of bash, zsh and ksh.
 pub fn quoted(path: &Path) -> String {
     let Some(name) = path.to_str().filter(|name| !name.contains(|c| c == '\n' || c == '\t' || is_hidden(c))) else {
         return escaped(path);
     };
-    // Not a flag.
+    // Prevents reading the name as a flag.
     let here = if name.starts_with('-') { "./" } else { "" };
     let is_plain = |c: char| c.is_alphanumeric() || "/._-+:,@%".contains(c);
     if !name.is_empty() && name.chars().all(is_plain) {
@@ -38,7 +38,7 @@ mod tests {
 
     use super::*;
 
-    /// What a shell hands to a program.
+    /// The argument that a program receives from a shell.
     fn heard(shell: &str, word: &str) -> Vec<u8> {
         Command::new(shell).args(["-c", &format!("printf %s {word}")]).output().unwrap().stdout
     }

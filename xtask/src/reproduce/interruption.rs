@@ -1,4 +1,4 @@
-//! What happens when a run is stopped.
+//! Handling of interruptions.
 
 use std::sync::Arc;
 
@@ -7,12 +7,12 @@ use anyhow::Context as _;
 use crate::progress::say;
 use crate::runner::records::Records;
 
-/// Exit status of a run that was stopped.
+/// Exit status of an interrupted run.
 const INTERRUPTED: i32 = 130;
 
-/// Ctrl-C, a closed terminal or a `kill` waits for a line that is being written, says what is kept, and leaves.
+/// On Ctrl-C, a closed terminal or a `kill`, waits until the current line is written, reports what was saved, and exits.
 ///
-/// Whoever started the program may have it ignore some of these signals, as `nohup` does: then it stays with that.
+/// If the caller has set some of these signals to be ignored, as `nohup` does, they remain ignored.
 pub(super) fn stop_cleanly(records: &Arc<Records>) -> anyhow::Result<()> {
     let records = Arc::clone(records);
     let stop = move || {

@@ -1,4 +1,4 @@
-//! `cargo xtask reproduce`: runs experiments, keeps every finished data set, and ends with the tables.
+//! `cargo xtask reproduce`: runs experiments, saves every finished data set, and ends with the tables.
 
 mod interruption;
 mod selection;
@@ -32,7 +32,7 @@ use interruption::stop_cleanly;
 use selection::{list, select};
 use shard::{Shard, merged};
 
-/// Data sets a row with `--quick`.
+/// Number of data sets per row with `--quick`.
 const QUICK_DATA_SETS: u32 = 3;
 
 #[derive(Debug, Args)]
@@ -94,7 +94,7 @@ impl Reproduce {
         }
         let (results, failures) = self.measure(&experiments, &records, &pool)?;
         let mut sources = Sources { results, documents: BTreeMap::new(), missing: vec![] };
-        // The results are safe before anything else may go wrong.
+        // Saves the results before anything else can fail.
         folder.keep(&sources)?;
         for failure in &failures {
             say(failure);
@@ -126,7 +126,7 @@ impl Reproduce {
         Plan { data_sets: quick(QUICK_DATA_SETS), of_comparisons: quick(1), seed: self.seed }
     }
 
-    /// The records of the folder, and of all shards to be merged; without a word where all of them can be used.
+    /// The records of the folder, and of all shards to be merged; reports records that cannot be used.
     fn records(&self, folder: &RunFolder) -> anyhow::Result<Records> {
         let earlier = if self.fresh { Earlier::Forget } else { Earlier::Resume };
         let mut records = Records::open(&folder.join("records.jsonl"), earlier)?;
@@ -140,7 +140,7 @@ impl Reproduce {
         Ok(records)
     }
 
-    /// Measures what is not measured yet, and sums up; with a line for every data set that failed.
+    /// Measures the missing data sets and summarises all. Also returns a line for every data set that failed.
     fn measure(
         &self,
         experiments: &[Experiment],
@@ -172,7 +172,7 @@ impl Reproduce {
         Ok((results, failures(experiments, &outcomes)))
     }
 
-    /// What to type for the same again, without what changes no number.
+    /// The command that repeats the run, without options that do not change the numbers.
     fn command(&self) -> String {
         let mut command = "cargo xtask reproduce".to_owned();
         if self.quick {
@@ -187,7 +187,7 @@ impl Reproduce {
         format!("{command} --seed {}", self.seed)
     }
 
-    /// Says how it went; a row of which nothing could be measured is an error.
+    /// Reports the result; a row without a single measured data set is an error.
     fn conclude(&self, experiments: &[Experiment], results: &Results, folder: &RunFolder) -> anyhow::Result<()> {
         for (experiment, result) in results.of(experiments) {
             let tally = Tally::of([(experiment, result)]);
@@ -217,7 +217,7 @@ impl Reproduce {
     }
 }
 
-/// Why data sets could not be measured, in this run or an earlier one.
+/// The reasons why data sets failed, in this run or an earlier one.
 fn failures(experiments: &[Experiment], outcomes: &[Vec<Outcomes>]) -> Vec<String> {
     let mut failures = Vec::new();
     for (experiment, outcomes) in experiments.iter().zip(outcomes) {
@@ -232,7 +232,7 @@ fn failures(experiments: &[Experiment], outcomes: &[Vec<Outcomes>]) -> Vec<Strin
     failures
 }
 
-/// Writes to standard output; a reader that has seen enough (`| head`) is no error.
+/// Writes to standard output; a reader that stops early (`| head`) is no error.
 fn print(text: &str) -> anyhow::Result<()> {
     match io::Write::write_all(&mut io::stdout(), text.as_bytes()) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => {

@@ -1,14 +1,14 @@
-//! Which experiments are run: `--only`, and the list of what there is.
+//! Selection of experiments by `--only`, and the list of all experiments.
 
 use experiments::{Experiment, Setup};
 
 use crate::failure::Failure;
 
-/// Names that are as alike as this may be meant for each other (Jaro and Winkler's measure: 1 for equal names).
+/// A name with at least this similarity is suggested (Jaro-Winkler similarity: 1 for equal names).
 const LIKE: f64 = 0.8;
 
-/// Keeps the experiments, setups and rows that are asked for; all where nothing is. Rows that are measured on the same
-/// data sets stay together.
+/// Keeps the experiments, setups and rows that `only` names, or all if it is empty. Rows with the same data sets stay
+/// together.
 pub(super) fn select(mut experiments: Vec<Experiment>, only: &[String]) -> anyhow::Result<Vec<Experiment>> {
     if only.is_empty() {
         return Ok(experiments);
@@ -38,7 +38,7 @@ pub(super) fn select(mut experiments: Vec<Experiment>, only: &[String]) -> anyho
     Ok(experiments)
 }
 
-/// The experiment, setup or row whose name is most like it.
+/// The most similar name of an experiment or row, if any is similar enough.
 fn nearest<'a>(wanted: &str, experiments: &'a [Experiment]) -> Option<&'a str> {
     let names = experiments.iter().flat_map(|experiment| {
         let rows = experiment.rows().map(|row| row.id.as_str());
@@ -48,11 +48,11 @@ fn nearest<'a>(wanted: &str, experiments: &'a [Experiment]) -> Option<&'a str> {
     alike.filter(|(alike, _)| *alike > LIKE).max_by(|(a, _), (b, _)| a.total_cmp(b)).map(|(_, name)| name)
 }
 
-/// Units of [`Setup::cost`] that a second of processor time does, over a whole run (520 s); a single experiment takes up
+/// Units of [`Setup::cost`] per second of processor time, averaged over a full run (520 s). A single experiment takes up
 /// to twice as long, or half.
 const COST_A_SECOND: f64 = 5e7;
 
-/// Every experiment and how long it takes, with its rows if they are asked for; last the time of all.
+/// Lists every experiment with its time, and with its rows on request; the last line is the total time.
 pub(super) fn list(experiments: &[Experiment], with_rows: bool) -> String {
     let line = |e: &Experiment| {
         let rows: Vec<&str> = e.rows().map(|row| row.id.as_str()).collect();
@@ -88,7 +88,7 @@ mod tests {
 
     use super::*;
 
-    /// Names of rows have slashes of their own.
+    /// Names of rows may contain slashes.
     #[test]
     fn every_row_is_found_by_its_name_and_within_its_experiment() {
         for experiment in registry().unwrap() {

@@ -1,7 +1,7 @@
-//! A run shared among machines: `--shard I/N` measures one share of its data sets, `--merge` makes one run of all shares.
+//! A run distributed over machines: `--shard I/N` measures one share of its data sets, `--merge` joins all shares into one run.
 //!
-//! Data sets are dealt out in turn, so that every share has as much of each row. What a data set gives does not depend on
-//! who measures it: the merged run is the single one, to the last bit.
+//! Data sets are assigned in turn, so that every share has an equal part of each row. The result of a data set does not depend on
+//! the machine: the merged run equals a single run to the last bit.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -17,23 +17,23 @@ use crate::run_folder::RunFolder;
 use crate::runner::Work;
 use crate::runner::records::Records;
 
-/// What a shard leaves beside its records.
+/// The file that a shard writes beside its records.
 const FILE: &str = "shard.json";
 
-/// Missing data sets that are named.
+/// Number of missing data sets that are named.
 const NAMED: usize = 3;
 
 /// One of several shares of the work.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(try_from = "BTreeMap<String, u32>")]
 pub(super) struct Shard {
-    /// Which, from 1.
+    /// Index of the share, from 1.
     index: u32,
-    /// Of how many.
+    /// Number of shares.
     of: u32,
 }
 
-/// What a shard's file says.
+/// Parses the contents of a shard's file.
 impl TryFrom<BTreeMap<String, u32>> for Shard {
     type Error = String;
 
@@ -66,17 +66,17 @@ impl std::fmt::Display for Shard {
 }
 
 impl Shard {
-    /// Where its records go unless told otherwise.
+    /// The default folder of its records.
     pub(super) fn folder(self) -> Result<PathBuf, Failure> {
         Ok(repository()?.join(format!("target/shards/{}-of-{}", self.index, self.of)))
     }
 
-    /// Whether the data set at this place is of its share.
+    /// Whether the data set with index `place` belongs to its share.
     fn has(self, place: usize) -> bool {
         place % self.of as usize == self.index as usize - 1
     }
 
-    /// Measures its share, and says what to do with it.
+    /// Measures its share, and explains how to continue.
     pub(super) fn measure(self, work: &mut Work<'_>, records: &Arc<Records>, folder: &RunFolder) -> anyhow::Result<()> {
         write(&folder.join(FILE), serde_json::to_string(&self)?)?;
         work.measure(|place| self.has(place), records)?;
@@ -90,7 +90,7 @@ impl Shard {
         Ok(())
     }
 
-    /// Which share a folder holds.
+    /// The share in a folder.
     fn read(folder: &Path) -> anyhow::Result<Shard> {
         let path = folder.join(FILE);
         let name = relative(&path);
@@ -100,7 +100,7 @@ impl Shard {
     }
 }
 
-/// Fails unless the shards in these folders have measured everything; names those that have not.
+/// Fails unless the shards in these folders have measured everything; names the incomplete ones.
 pub(super) fn merged(work: &mut Work<'_>, folders: &[PathBuf]) -> anyhow::Result<()> {
     let shards: Vec<Shard> = folders.iter().map(|folder| Shard::read(folder)).collect::<anyhow::Result<_>>()?;
     let of = shards.first().map_or(1, |shard| shard.of);

@@ -1,4 +1,4 @@
-//! Runs the selected setups over their data sets, in parallel, keeping every finished one.
+//! Runs the selected setups on their data sets in parallel, and saves every finished one.
 
 pub(crate) mod records;
 
@@ -12,19 +12,19 @@ use rayon::prelude::*;
 use crate::progress::Progress;
 use records::{DataSet, Records};
 
-/// What to run: how many data sets a setup, from which seed.
+/// Number of data sets per setup, and their seed.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Plan {
-    /// Overrides each experiment's own number of data sets.
+    /// Overrides the experiments' numbers of data sets.
     pub(crate) data_sets: Option<u32>,
-    /// The same for setups that only hold learners against each other; they take longest.
+    /// The same for setups that only compare learners; they take longest.
     pub(crate) of_comparisons: Option<u32>,
     /// Seed of all random numbers.
     pub(crate) seed: u64,
 }
 
 impl Plan {
-    /// Repetitions of a setup of an experiment; of one that has its own number, no more than that.
+    /// Number of data sets of a setup in an experiment. If a setup defines a number, that is the maximum.
     pub(crate) fn data_sets(&self, experiment: &Experiment, setup: &Setup) -> u32 {
         let own = setup.data_sets_of(experiment);
         let asked = if setup.is_of_comparisons() { self.of_comparisons } else { self.data_sets };
@@ -32,19 +32,19 @@ impl Plan {
     }
 }
 
-/// All data sets of all setups, in order: those that an earlier run finished have their outcome.
+/// All data sets of all setups, in order. Those that an earlier run finished have their outcome.
 pub(crate) struct Work<'a> {
     experiments: &'a [Experiment],
     plan: Plan,
-    /// All that determines what a data set gives, but its number: by experiment and setup.
+    /// Everything that determines the outcome of a data set except its number, by experiment and setup.
     definitions: Vec<Vec<String>>,
     /// By experiment, setup and data set.
     slots: Vec<Vec<Vec<Option<Outcome>>>>,
 }
 
-/// One data set of one setup that is still to be measured, and where its outcome goes.
+/// A data set that is still to be measured, and the slot for its outcome.
 struct Job<'a> {
-    /// Its place among all data sets.
+    /// Its index among all data sets.
     place: usize,
     setup: &'a Setup,
     data_set: DataSet<'a>,
@@ -52,7 +52,7 @@ struct Job<'a> {
 }
 
 impl<'a> Work<'a> {
-    /// Looks for what `records` hold.
+    /// Looks up the outcomes in `records`.
     pub(crate) fn find(experiments: &'a [Experiment], plan: Plan, records: &Records) -> anyhow::Result<Work<'a>> {
         let definition = |setup: &Setup| Ok(serde_json::to_string(&(setup.system, setup.trial.parameters()?))?);
         let of_setups = |e: &Experiment| e.setups.iter().map(definition).collect::<anyhow::Result<Vec<String>>>();
@@ -68,14 +68,14 @@ impl<'a> Work<'a> {
         Ok(Work { experiments, plan, definitions, slots })
     }
 
-    /// How many data sets there are.
+    /// Number of data sets.
     pub(crate) fn total(&self) -> usize {
         self.slots.iter().flatten().map(Vec::len).sum()
     }
 
-    /// Measures every data set that `is_wanted`, by its place, skipping what was found; how many those are.
+    /// Measures every data set whose index `is_wanted`, except those already found; returns the number measured.
     ///
-    /// The result depends only on experiments, plan and program: not on the number of threads, nor on what was found.
+    /// The result depends only on experiments, plan and program, not on the number of threads or on the outcomes found.
     pub(crate) fn measure(
         &mut self,
         is_wanted: impl Fn(usize) -> bool,
@@ -86,7 +86,7 @@ impl<'a> Work<'a> {
         let jobs: Vec<Job<'_>> = self.jobs().into_iter().filter(|job| is_wanted(job.place)).collect();
         let progress = Progress::start(wanted, jobs.len(), jobs.iter().map(|job| job.setup.cost).sum());
         let measured = jobs.len();
-        // One job at a time to each thread: data sets of different setups differ a hundredfold in work.
+        // Each thread takes one job at a time, because the work of data sets of different setups varies a hundredfold.
         jobs.into_par_iter().with_max_len(1).try_for_each(
             |Job { setup, data_set, slot, .. }| -> anyhow::Result<()> {
                 let mut rng = generator(seed, setup.system, data_set.number);
@@ -101,7 +101,7 @@ impl<'a> Work<'a> {
         Ok(measured)
     }
 
-    /// What is not measured yet: its place, and its name for people.
+    /// The data sets that are not measured yet, with index and a readable name.
     pub(crate) fn missing(&mut self) -> Vec<(usize, String)> {
         let named = |job: Job<'_>| {
             let DataSet { experiment, setup, number, .. } = job.data_set;
@@ -110,7 +110,7 @@ impl<'a> Work<'a> {
         self.jobs().into_iter().map(named).collect()
     }
 
-    /// By experiment and setup, once nothing is missing.
+    /// All outcomes by experiment and setup; none may be missing.
     pub(crate) fn outcomes(self) -> Vec<Vec<Outcomes>> {
         let take = |slot: Option<Outcome>| slot.unwrap_or_else(|| unreachable!("every slot is found or measured"));
         let of_setup = |slots: Vec<Option<Outcome>>| slots.into_iter().map(take).collect();
@@ -133,13 +133,13 @@ impl<'a> Work<'a> {
     }
 }
 
-/// What an earlier run finished; nothing if the record is of another number of rows than the setup has.
+/// The outcome from an earlier run; `None` if the record's number of rows differs from the setup's.
 fn find(records: &Records, setup: &Setup, data_set: &DataSet<'_>) -> Option<Outcome> {
     let outcome = records.finished(data_set)?;
     outcome.is_of_rows(setup.rows.len()).then(|| outcome.clone())
 }
 
-/// A data set of a setup; `definition` is all that determines what it gives.
+/// A data set of a setup; `definition` contains everything that determines its outcome.
 fn name<'a>(experiment: &Experiment, setup: &'a Setup, definition: &'a str, plan: Plan, number: u32) -> DataSet<'a> {
     DataSet { experiment: experiment.id, setup: &setup.id, definition, seed: plan.seed, number }
 }

@@ -1,4 +1,4 @@
-//! Finished data sets, kept one line each so that nothing but what is in flight is ever lost.
+//! Records of finished data sets, saved one per line, so that an interruption loses only unfinished ones.
 
 use std::collections::HashMap;
 use std::fs::File;
@@ -17,7 +17,7 @@ use crate::failure::Failure;
 /// The first line of the file.
 pub(crate) const KIND: &str = "policy-align records 1";
 
-/// Names one data set of one setup of an experiment.
+/// Identifies one data set of one setup of an experiment.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct DataSet<'a> {
     /// The experiment's id.
@@ -28,7 +28,7 @@ pub(crate) struct DataSet<'a> {
     pub(crate) definition: &'a str,
     /// The seed of the run.
     pub(crate) seed: u64,
-    /// The repetition, from 0.
+    /// Index of the data set, from 0.
     pub(crate) number: u32,
 }
 
@@ -41,7 +41,7 @@ pub(crate) struct Records {
     unreadable: usize,
 }
 
-/// What is kept of one data set of one setup.
+/// The record of one data set of one setup.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 struct Record {
     key: String,
@@ -54,15 +54,15 @@ struct Record {
 /// Whether the outcomes of earlier runs are used.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Earlier {
-    /// Pick up what is finished.
+    /// Use the finished data sets.
     Resume,
-    /// Forget it.
+    /// Discard them.
     Forget,
 }
 
 impl Records {
-    /// Opens the records at `path`, creating them where there are none. Lines that cannot be believed, such as the torn
-    /// last line of a killed run, are passed over; their data sets are computed again.
+    /// Opens the records at `path`, or creates them. Lines that are invalid, such as the incomplete last line of a
+    /// killed run, are skipped; their data sets are computed again.
     pub(crate) fn open(path: &Path, earlier: Earlier) -> anyhow::Result<Records> {
         let (journal, found) = Journal::open(path, KIND).map_err(|error| {
             let remedy = match error.kind() {
@@ -80,7 +80,7 @@ impl Records {
         Ok(records)
     }
 
-    /// Adds what another file holds, which stays as it is.
+    /// Adds the records of another file, which does not change.
     pub(crate) fn add(&mut self, path: &Path) -> anyhow::Result<()> {
         let found = journal::read(path, KIND).map_err(|error| {
             let remedy = "--merge with the folder of each shard, made by this version";
@@ -95,7 +95,7 @@ impl Records {
         self.unreadable += found.damaged;
     }
 
-    /// How many lines were passed over.
+    /// Number of skipped lines.
     pub(crate) fn unreadable(&self) -> usize {
         self.unreadable
     }
@@ -105,7 +105,7 @@ impl Records {
         self.finished.get(&self.key(data_set))
     }
 
-    /// Writes a finished data set to the file at once.
+    /// Immediately writes a finished data set to the file.
     pub(crate) fn append(&self, data_set: &DataSet<'_>, outcome: &Outcome) -> anyhow::Result<()> {
         let record = Record {
             key: self.key(data_set),
@@ -125,7 +125,7 @@ impl Records {
         format!("cannot write to {}", self.journal.path().display())
     }
 
-    /// Holds back every write while the guard lives, so that a process may end without tearing a line.
+    /// Blocks all writes while the guard exists, so that the process can exit without an incomplete line.
     pub(crate) fn writing(&self) -> MutexGuard<'_, File> {
         self.journal.writing()
     }
@@ -140,8 +140,8 @@ impl Records {
     }
 }
 
-/// A hash of the running program itself: whatever changes the program, be it a source line, a dependency or a compiler
-/// flag, starts new records.
+/// A hash of the running program. Any change of the program, in a source line, a dependency or a compiler flag, starts
+/// new records.
 fn code_identity() -> anyhow::Result<u64> {
     let bytes = std::env::current_exe().and_then(std::fs::read).context("cannot read the running program")?;
     let mut hasher = DefaultHasher::new();

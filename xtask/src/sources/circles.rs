@@ -1,14 +1,14 @@
-//! Files of a package that use each other: none can be read, or changed, without the rest of its circle.
+//! Detects files of a package that use each other in a circle. None of them can be understood or changed without the others.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::Source;
 use super::module_tree::ModuleTree;
 
-/// Names of items, by the source that uses them and the other that defines them.
+/// Names of used items, by the index of the using source and of the defining source.
 type Uses = BTreeMap<(usize, usize), BTreeSet<String>>;
 
-/// One fault for each circle, with the names that tie it.
+/// One fault for each circle, with the names that cause it.
 pub(crate) fn faults(sources: &[Source]) -> Vec<String> {
     let uses = uses(&ModuleTree::new(sources));
     let path = |file: usize| sources[file].path.display();
@@ -25,8 +25,8 @@ pub(crate) fn faults(sources: &[Source]) -> Vec<String> {
     circles(&uses, sources.len()).into_iter().map(fault).collect()
 }
 
-/// What a module uses of those that it lies in does not count: it is a part of them. Neither do methods and fields, nor what
-/// is imported only to hand it on.
+/// Uses between files. Uses of an enclosing module do not count, because the module is a part of it. Methods, fields and
+/// re-exports do not count either.
 fn uses(tree: &ModuleTree<'_>) -> Uses {
     let mut uses = Uses::new();
     for (number, module) in tree.modules.iter().enumerate() {
@@ -38,7 +38,7 @@ fn uses(tree: &ModuleTree<'_>) -> Uses {
     uses
 }
 
-/// Sets of files of which each leads to all others.
+/// Sets of files in which each reaches all others.
 fn circles(uses: &Uses, files: usize) -> Vec<BTreeSet<usize>> {
     let reached: Vec<BTreeSet<usize>> = (0..files).map(|file| reached(uses, file)).collect();
     let circle = |file: usize| reached[file].iter().copied().filter(|&other| reached[other].contains(&file)).collect();
@@ -46,7 +46,7 @@ fn circles(uses: &Uses, files: usize) -> Vec<BTreeSet<usize>> {
     circles.into_iter().filter(|circle| circle.len() > 1).collect()
 }
 
-/// Files that `file` uses, directly and by others.
+/// Files that `file` uses directly or indirectly.
 fn reached(uses: &Uses, file: usize) -> BTreeSet<usize> {
     let mut reached = BTreeSet::new();
     let mut next = vec![file];
@@ -78,7 +78,7 @@ mod tests {
               \n  a.rs uses B, f of b.rs\
               \n  b.rs uses A of a.rs"]
         );
-        // Over a third file, and through a macro.
+        // Through a third file, and through a macro.
         let c = "pub struct C;\nfn h() { vec![crate::a::A::new()]; }\n";
         let files =
             [("lib.rs", "mod a;\nmod b;\nmod c;\n"), ("a.rs", "use crate::b::B;\npub struct A(B);\n"), ("c.rs", c)];
@@ -96,7 +96,7 @@ mod tests {
         let top = "use super::{b, renamed};\nuse crate::{B, Low};\nfn g(_: B, _: Low) { renamed(); b::h(); }\n";
         let files = [("lib.rs", root), ("a/mod.rs", folder), ("a/low.rs", low), ("a/top.rs", top)];
         let with = |b: &'static str| faults_of(&[&files[..], &[("a/b.rs", b)]].concat());
-        // Neither an import to hand on nor the declaration of a module is a use, nor what a part uses of the whole.
+        // Re-exports, declarations of modules, and uses of an enclosing module do not count.
         assert!(with("use crate::Root;\npub struct B(Root);\npub fn h() {}\n").is_empty());
         assert!(with("use super::super::Low;\npub struct B(Low);\npub fn h() {}\n").is_empty());
         let tied = with("pub struct B;\npub fn h() { super::top::g(); }\n");

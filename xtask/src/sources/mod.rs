@@ -1,4 +1,4 @@
-//! Sources of one package as the compiler sees them outside tests.
+//! Sources of one package as compiled without tests.
 
 pub(crate) mod circles;
 mod module_tree;
@@ -11,11 +11,11 @@ use proc_macro2::{Delimiter, Group, LexError, TokenStream, TokenTree};
 
 /// One file of a package.
 pub(crate) struct Source {
-    /// From the folder `src`.
+    /// Path relative to the folder `src`.
     path: PathBuf,
-    /// Lines outside items that only tests compile.
+    /// Number of lines outside items that are compiled only for tests.
     product_lines: usize,
-    /// What these lines hold, without attributes.
+    /// Tokens of these lines, without attributes.
     tokens: TokenStream,
 }
 
@@ -28,14 +28,14 @@ impl Source {
     }
 }
 
-/// Lines of product code: those of files that a module outside tests declares, without tests inside them.
+/// Number of lines of product code: the files of modules declared outside tests, without the tests inside them.
 pub(crate) fn product_lines(sources: &[Source]) -> usize {
     let files = module_tree::ModuleTree::new(sources).files();
     files.into_iter().map(|file| sources[file].product_lines).sum()
 }
 
-/// Tokens without attributes and without the items that only tests compile. The lines of these are taken from `lines`,
-/// attributes and documentation included.
+/// Tokens without attributes and test-only items. Subtracts the lines of these items from `lines`, including attributes
+/// and documentation.
 fn without_tests(tokens: TokenStream, lines: &mut usize) -> TokenStream {
     let tokens: Vec<TokenTree> = tokens.into_iter().collect();
     let mut retained = TokenStream::new();
@@ -79,7 +79,7 @@ fn is_test_only(attribute: TokenStream) -> bool {
     all.or(only).is_some_and(|conditions| conditions.into_iter().any(is_test))
 }
 
-/// What is in parentheses after a word.
+/// The tokens in parentheses after a word.
 fn within(word: &str, tokens: TokenStream) -> Option<TokenStream> {
     let mut tokens = tokens.into_iter();
     match (tokens.next()?, tokens.next()?) {

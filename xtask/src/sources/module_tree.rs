@@ -1,4 +1,4 @@
-//! Modules of a package, and which file defines what a path names.
+//! Modules of a package, and resolution of paths to the files that define their items.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -8,29 +8,29 @@ use proc_macro2::{TokenStream, TokenTree};
 use super::paths::{ALL, imports, paths};
 use super::{Source, is_mark, is_word};
 
-/// Imports followed from one to the next; a chain that is longer names itself.
+/// Longest chain of imports that is followed; a longer one is circular.
 const LONGEST_CHAIN: usize = 8;
 
-/// What stands before the name of an item.
+/// Keywords before the name of an item.
 const KEYWORDS: [&str; 7] = ["const", "enum", "fn", "static", "struct", "trait", "type"];
 
-/// Modules outside tests, those of a library and of a program with a root each.
+/// Modules outside tests; a library and a program have separate roots.
 pub(super) struct ModuleTree<'a> {
     sources: &'a [Source],
     pub(super) modules: Vec<Module>,
 }
 
 pub(super) struct Module {
-    /// The source that it stands in.
+    /// Index of its source.
     pub(super) file: usize,
     parent: Option<usize>,
-    /// What names stand for; "*" for everything of a module.
+    /// Names and their meanings; "*" for all names of a module.
     names: Vec<(String, Name)>,
-    /// Paths in it, but for what is imported only to hand it on.
+    /// Paths in it, without those of re-exports.
     pub(super) paths: Vec<Vec<String>>,
 }
 
-/// What a name stands for in a module.
+/// The meaning of a name in a module.
 enum Name {
     Module(usize),
     /// An item of the module.
@@ -41,7 +41,7 @@ enum Name {
 #[derive(Clone, Copy)]
 enum Found {
     Module(usize),
-    /// An item, by the source that defines it.
+    /// An item, with the index of the source that defines it.
     Item(usize),
 }
 
@@ -56,12 +56,12 @@ impl<'a> ModuleTree<'a> {
         tree
     }
 
-    /// Sources that a module stands in.
+    /// Indices of the sources of all modules.
     pub(super) fn files(&self) -> BTreeSet<usize> {
         self.modules.iter().map(|module| module.file).collect()
     }
 
-    /// Adds a module whose children stand in `folder`, and these; gives its number.
+    /// Adds a module with its descendants, whose files are in `folder`; returns its index.
     fn add(&mut self, file: usize, tokens: TokenStream, parent: Option<usize>, folder: &Path) -> usize {
         let own = self.modules.len();
         self.modules.push(Module { file, parent, names: Vec::new(), paths: Vec::new() });
@@ -80,7 +80,7 @@ impl<'a> ModuleTree<'a> {
                     names.extend(number.map(|number| (name.to_string(), Name::Module(number))));
                     3
                 }
-                // Not `use<>`, which says what a type captures.
+                // Excludes `use<>`, which lists captured types.
                 [keyword, import @ ..]
                     if is_word(keyword, "use") && !import.first().is_some_and(|t| is_mark(t, '<')) =>
                 {
@@ -107,21 +107,22 @@ impl<'a> ModuleTree<'a> {
             };
             at += length;
         }
-        // What a module names itself hides all names that it has from another.
+        // Explicit names hide those of glob imports.
         names.sort_by_key(|(name, _)| name == ALL);
         used.extend(paths(body));
         (self.modules[own].names, self.modules[own].paths) = (names, used);
         own
     }
 
-    /// The file of a module that is only declared.
+    /// The file of a module that is declared without a body.
     fn declared(&self, folder: &Path) -> Option<(usize, TokenStream)> {
         let paths = [folder.with_extension("rs"), folder.join("mod.rs")];
         let file = self.sources.iter().position(|source| paths.contains(&source.path))?;
         Some((file, self.sources[file].tokens.clone()))
     }
 
-    /// The item that `path` names in a module, and the source that defines it; none if it is a module or of another crate.
+    /// The item that `path` names in a module, with the source that defines it; `None` for a module or an item of another
+    /// crate.
     pub(super) fn item<'p>(&self, module: usize, path: &'p [String]) -> Option<(&'p str, usize)> {
         match self.find(module, path, LONGEST_CHAIN)? {
             (Found::Item(file), named) => Some((named.last()?, file)),
@@ -129,7 +130,7 @@ impl<'a> ModuleTree<'a> {
         }
     }
 
-    /// What the beginning of a path, handed back, names: all that follows an item is associated with it.
+    /// The meaning of the beginning of a path, which is returned with it. Everything after an item is associated with it.
     fn find<'p>(&self, module: usize, path: &'p [String], chain: usize) -> Option<(Found, &'p [String])> {
         let mut found = Found::Module(module);
         for (at, segment) in path.iter().enumerate() {
@@ -144,7 +145,7 @@ impl<'a> ModuleTree<'a> {
         Some((found, path))
     }
 
-    /// Whether a module or one that it lies in stands in `file`.
+    /// Whether a module, or one that contains it, is in `file`.
     pub(super) fn is_within(&self, module: usize, file: usize) -> bool {
         let module = &self.modules[module];
         module.file == file || module.parent.is_some_and(|parent| self.is_within(parent, file))
@@ -154,7 +155,7 @@ impl<'a> ModuleTree<'a> {
         self.modules[module].parent.map_or(module, |parent| self.root(parent))
     }
 
-    /// A module and an item may have the same name: the `last` segment of a path means the item, all others the module.
+    /// A module and an item may have the same name. The `last` segment of a path denotes the item, all others the module.
     fn look_up(&self, module: usize, name: &str, last: bool, chain: usize) -> Option<Found> {
         let chain = chain.checked_sub(1)?;
         let here = &self.modules[module];

@@ -1,11 +1,11 @@
-//! What reads as a path in the tokens of a source.
+//! Extraction of paths from the tokens of a source.
 
 use proc_macro2::{Delimiter, TokenStream, TokenTree};
 
-/// The last segment of an import of everything.
+/// The last segment of a glob import.
 pub(super) const ALL: &str = "*";
 
-/// All paths, those in braces after `::` with what is before them. One of `::other_crate` begins with an empty name.
+/// All paths. Those in braces after `::` include the part before. A path of `::other_crate` begins with an empty name.
 pub(super) fn paths(tokens: TokenStream) -> Vec<Vec<String>> {
     let mut found = Vec::new();
     collect(tokens, &[], &mut found);
@@ -13,7 +13,7 @@ pub(super) fn paths(tokens: TokenStream) -> Vec<Vec<String>> {
     found
 }
 
-/// What an import brings, without `use` and `;`: names, and the paths that they stand for.
+/// The names that an import introduces, with their paths; `tokens` excludes `use` and `;`.
 pub(super) fn imports(tokens: TokenStream) -> Vec<(String, Vec<String>)> {
     let mut imports: Vec<(String, Vec<String>)> = Vec::new();
     let mut renamed = false;
@@ -28,10 +28,10 @@ pub(super) fn imports(tokens: TokenStream) -> Vec<(String, Vec<String>)> {
     imports
 }
 
-/// Adds the paths in `tokens`, which follow on `outer`.
+/// Adds the paths in `tokens`, which continue `outer`.
 fn collect(tokens: TokenStream, outer: &[String], found: &mut Vec<Vec<String>>) {
     let mut path = Vec::new();
-    // Punctuation since the last word: what follows "::" belongs to its path, and a field or method follows ".".
+    // Punctuation since the last word: after "::" a path continues, after "." follows a field or method.
     let mut marks = String::new();
     for token in tokens {
         match token {

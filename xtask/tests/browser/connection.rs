@@ -1,4 +1,4 @@
-//! The debugging protocol: numbered calls and events, as JSON over a web socket.
+//! The debugging protocol: numbered calls, and events, as JSON over a web socket.
 
 use std::net::TcpStream;
 use std::path::Path;
@@ -9,14 +9,14 @@ use tungstenite::{Message, WebSocket};
 
 use super::program::Program;
 
-/// A page of the browser, in a window that shares neither storage nor settings with others.
+/// A page of the browser, in a window that shares neither storage nor settings with other pages.
 pub(super) struct Connection {
     socket: WebSocket<TcpStream>,
-    /// Of the page; empty for calls to the browser itself.
+    /// Id of the page's session; empty for calls to the browser itself.
     session: String,
     calls: u64,
     events: Vec<Value>,
-    /// The browser ends with the last page.
+    /// Keeps the browser running; it ends with the last page.
     _program: Arc<Program>,
 }
 
@@ -27,7 +27,7 @@ impl Connection {
         let socket = program.socket();
         let mut connection =
             Connection { socket, session: String::new(), calls: 0, events: Vec::new(), _program: program };
-        // Ends with this connection, and its page with it.
+        // The context ends with this connection, and so does its page.
         let context = connection.call("Target.createBrowserContext", &json!({ "disposeOnDetach": true }));
         let page = json!({ "url": "about:blank", "browserContextId": context["browserContextId"], "newWindow": true });
         let target = connection.call("Target.createTarget", &page)["targetId"].clone();
@@ -36,7 +36,7 @@ impl Connection {
         connection
     }
 
-    /// Calls a method and gives its result.
+    /// Calls a method and returns its result.
     pub(super) fn call(&mut self, method: &str, arguments: &Value) -> Value {
         self.send(method, arguments);
         loop {
@@ -49,7 +49,7 @@ impl Connection {
         }
     }
 
-    /// Waits for an event that has not come yet, or came since the page was opened.
+    /// Waits for an event, unless it has occurred since the page was opened.
     pub(super) fn wait_for(&mut self, event: &str) {
         while !self.events.iter().any(|seen| seen["method"] == event) {
             let message = self.receive();
@@ -57,7 +57,7 @@ impl Connection {
         }
     }
 
-    /// All events so far.
+    /// All events received so far.
     pub(super) fn events(&self) -> &[Value] {
         &self.events
     }

@@ -1,7 +1,7 @@
-//! A page in a real browser: Chromium without a window, spoken to by its debugging protocol.
+//! A page in a real browser: headless Chromium, controlled by its debugging protocol.
 //!
-//! [`Page::open`] gives a page, or none where no browser is installed: the test is then skipped, loudly. With
-//! `POLICY_ALIGN_BROWSER=required` it fails instead. The tests of `policy-align`'s pages use it too.
+//! [`Page::open`] returns a page, or `None` if no browser is installed; the test is then skipped, with a message. With
+//! `POLICY_ALIGN_BROWSER=required` it fails instead. The tests of `policy-align`'s pages also use this module.
 
 #![allow(dead_code, reason = "each test uses a part")]
 
@@ -16,28 +16,28 @@ use serde_json::{Value, json};
 
 use connection::Connection;
 
-/// How long a page may take for what is awaited.
+/// Longest time that a test waits for a page.
 const PATIENCE: Duration = Duration::from_secs(60);
 
-/// Where the page is in the window, CSS pixels.
+/// A position in the window, CSS pixels.
 pub(crate) type Point = (f64, f64);
 
 /// An open page.
 pub(crate) struct Page {
     connection: Connection,
     address: String,
-    /// Pixels of the screen for each CSS pixel along a side.
+    /// Number of screen pixels per CSS pixel along a side.
     pixels: f64,
 }
 
 impl Page {
-    /// Opens a file and waits until it is loaded; none where there is no browser.
+    /// Opens a file and waits until it is loaded; returns `None` if there is no browser.
     pub(crate) fn open(file: &Path) -> Option<Page> {
         Page::open_on(file, 1.0)
     }
 
-    /// The same on a screen with so many pixels for each CSS pixel along a side: without a graphics card a scene takes as long
-    /// as it has pixels.
+    /// The same on a screen with `pixels` screen pixels per CSS pixel along a side. Without a graphics card, drawing time is
+    /// proportional to the number of pixels.
     pub(crate) fn open_on(file: &Path, pixels: f64) -> Option<Page> {
         let program = program::find()?;
         let mut page = Page {
@@ -53,12 +53,12 @@ impl Page {
         let failure = page.call("Page.navigate", &json!({ "url": address }))["errorText"].clone();
         assert!(failure.is_null(), "{address}: {failure}");
         page.connection.wait_for("Page.loadEventFired");
-        // As the browser writes it.
+        // The address as the browser writes it.
         page.address = page.evaluate("location.href");
         Some(page)
     }
 
-    /// The value of an expression, after the promise where it is one.
+    /// The value of an expression; a promise is awaited.
     pub(crate) fn evaluate<T: DeserializeOwned>(&mut self, expression: &str) -> T {
         let arguments = json!({ "expression": expression, "returnByValue": true, "awaitPromise": true });
         let answer = self.call("Runtime.evaluate", &arguments);
@@ -75,23 +75,23 @@ impl Page {
         }
     }
 
-    /// Gives the window another size, CSS pixels.
+    /// Resizes the window, CSS pixels.
     pub(crate) fn resize(&mut self, width: u32, height: u32) {
         let size = json!({ "width": width, "height": height, "deviceScaleFactor": self.pixels, "mobile": false });
         self.call("Emulation.setDeviceMetricsOverride", &size);
     }
 
-    /// Answers a media query: `("prefers-color-scheme", "dark")`.
+    /// Sets the answer to a media query: `("prefers-color-scheme", "dark")`.
     pub(crate) fn prefer(&mut self, feature: &str, value: &str) {
         self.call("Emulation.setEmulatedMedia", &json!({ "features": [{ "name": feature, "value": value }] }));
     }
 
-    /// Shows the page as it is printed.
+    /// Switches the page to its print layout.
     pub(crate) fn show_as_printed(&mut self) {
         self.call("Emulation.setEmulatedMedia", &json!({ "media": "print" }));
     }
 
-    /// What a screen reader is told: role and name of everything, in order.
+    /// The accessibility tree, as a screen reader receives it: role and name of every node, in order.
     pub(crate) fn accessible(&mut self) -> Vec<(String, String)> {
         let tree = self.call("Accessibility.getFullAXTree", &json!({}));
         let nodes = tree["nodes"].as_array().unwrap().iter().filter(|node| node["ignored"] == false);
@@ -99,7 +99,7 @@ impl Page {
         nodes.map(|node| (text(&node["role"]), text(&node["name"]))).collect()
     }
 
-    /// Presses and lets go of a key that has a name: Tab, Enter, Escape, ArrowLeft, ..
+    /// Presses and releases a key that has a name: Tab, Enter, Escape, ArrowLeft, ..
     pub(crate) fn press(&mut self, key: &str) {
         let code = match key {
             "Tab" => 9,
@@ -130,12 +130,12 @@ impl Page {
         self.drag(at, at);
     }
 
-    /// Presses the left button in one place and lets it go in another.
+    /// Presses the left button at one position and releases it at another.
     pub(crate) fn drag(&mut self, from: Point, to: Point) {
         self.drag_with("left", 0, from, to);
     }
 
-    /// Clicks twice.
+    /// Double-clicks with the left button.
     pub(crate) fn double_click(&mut self, at: Point) {
         for (kind, count) in [("mousePressed", 1), ("mouseReleased", 1), ("mousePressed", 2), ("mouseReleased", 2)] {
             let event = json!({ "type": kind, "x": at.0, "y": at.1, "button": "left", "clickCount": count });
@@ -143,7 +143,7 @@ impl Page {
         }
     }
 
-    /// Drags with a button, "left" or "right", and the modifiers of the protocol: 8 is Shift.
+    /// Drags with a button, "left" or "right", and the protocol's modifiers: 8 is Shift.
     pub(crate) fn drag_with(&mut self, button: &str, modifiers: u32, from: Point, to: Point) {
         let pressed = if button == "left" { 1 } else { 2 };
         let middle = (f64::midpoint(from.0, to.0), f64::midpoint(from.1, to.1));
@@ -161,13 +161,13 @@ impl Page {
         }
     }
 
-    /// Turns the wheel.
+    /// Turns the mouse wheel.
     pub(crate) fn wheel(&mut self, at: Point, turn: f64) {
         let event = json!({ "type": "mouseWheel", "x": at.0, "y": at.1, "deltaX": 0, "deltaY": turn });
         self.call("Input.dispatchMouseEvent", &event);
     }
 
-    /// The middle of the first element that a selector names, scrolled into sight.
+    /// The middle of the first element that a selector matches, scrolled into view.
     pub(crate) fn middle_of(&mut self, selector: &str) -> Point {
         self.evaluate(&format!(
             "(() => {{ const element = document.querySelector({selector:?});
@@ -177,7 +177,7 @@ impl Page {
         ))
     }
 
-    /// CSS pixels that the page needs across, with all that is folded open.
+    /// Width that the page needs with all details open, CSS pixels.
     pub(crate) fn width_needed(&mut self) -> u32 {
         self.evaluate(
             "(document.querySelectorAll('details').forEach(details => { details.open = true; }),
@@ -185,13 +185,13 @@ impl Page {
         )
     }
 
-    /// What is seen, as PNG in base 64.
+    /// A screenshot of the window, as PNG in base 64.
     pub(crate) fn screenshot(&mut self) -> String {
         self.call("Page.captureScreenshot", &json!({}))["data"].as_str().unwrap().to_owned()
     }
 
-    /// How light each pixel of the first element is that a selector names, 0 to 255, in ascending order. It is cut out of a screenshot
-    /// of the window, made as high as it needs: a screenshot of the element alone draws the whole page anew.
+    /// Brightness of each pixel of the first element that a selector matches, 0 to 255, in ascending order. The element is cut from a
+    /// screenshot of the window, which is enlarged as required; a screenshot of the element alone would redraw the whole page.
     pub(crate) fn shades(&mut self, selector: &str) -> Vec<u8> {
         let sides = format!(
             "(box => [box.left, box.top, box.right, box.bottom])(document.querySelector({selector:?}).getBoundingClientRect())"
@@ -226,8 +226,8 @@ impl Page {
         shades
     }
 
-    /// Errors and warnings on the console, exceptions that nobody caught, and what else the browser had to say, but for
-    /// how slowly it draws without a graphics card.
+    /// Errors and warnings on the console, uncaught exceptions, and other messages of the browser, except about slow drawing without a
+    /// graphics card.
     pub(crate) fn complaints(&mut self) -> Vec<String> {
         self.settle();
         let complaint = |event: &Value| match event["method"].as_str()? {
@@ -246,7 +246,7 @@ impl Page {
         self.connection.events().iter().filter_map(complaint).collect()
     }
 
-    /// Addresses that were asked for, besides the page's own and data within it.
+    /// Requested addresses, except the page's own and embedded data.
     pub(crate) fn requests(&mut self) -> Vec<String> {
         self.settle();
         let sent = self.connection.events().iter().filter(|event| event["method"] == "Network.requestWillBeSent");
@@ -257,7 +257,7 @@ impl Page {
             .collect()
     }
 
-    /// Lets come in what the browser has sent so far.
+    /// Waits for the events that the browser has already sent.
     fn settle(&mut self) {
         self.evaluate::<u32>("new Promise(done => requestAnimationFrame(() => setTimeout(() => done(0), 50)))");
     }

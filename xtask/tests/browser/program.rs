@@ -1,4 +1,4 @@
-//! The browser as a program: where it is, how it is started, and its end.
+//! The browser's process: finding, starting and ending it.
 
 use std::env;
 use std::fs;
@@ -16,10 +16,10 @@ use tungstenite::{Message, WebSocket, client};
 
 use super::PATIENCE;
 
-/// Names under which the system's packages install it.
+/// Names of the executable in the system's packages.
 const NAMES: [&str; 5] = ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome"];
 
-/// No window, no questions, no talk with its maker; the sandbox cannot be had in containers, and the page is our own.
+/// No window, no dialogs, no connections to the vendor. Containers do not allow the sandbox, and the page is our own.
 const ARGUMENTS: [&str; 14] = [
     "--headless",
     "--no-sandbox",
@@ -37,10 +37,10 @@ const ARGUMENTS: [&str; 14] = [
     "--remote-debugging-port=0",
 ];
 
-/// How long a browser may take to end.
+/// Longest time for the browser to end.
 const FAREWELL: Duration = Duration::from_secs(5);
 
-/// The browser to test with: `CHROME`, or the first on the path.
+/// The browser for tests: `CHROME`, or the first on the path.
 pub(super) fn find() -> Option<PathBuf> {
     let named = env::var_os("CHROME").map(PathBuf::from);
     let path = env::var_os("PATH").unwrap_or_default();
@@ -52,7 +52,7 @@ pub(super) fn find() -> Option<PathBuf> {
     if found.is_none() {
         let required = env::var("POLICY_ALIGN_BROWSER").is_ok_and(|policy| policy == "required");
         assert!(!required, "POLICY_ALIGN_BROWSER=required, but there is no Chromium on the path or in CHROME");
-        // Not by a printing macro: the test harness would keep it to itself.
+        // A printing macro would not do: the test harness would capture its output.
         let test = std::thread::current().name().unwrap_or("?").to_owned();
         let _ = writeln!(std::io::stderr(), "\n=== SKIPPED: {test}. No Chromium on the path or in CHROME.");
     }
@@ -65,13 +65,13 @@ pub(super) struct Program {
     profile: TempDir,
 }
 
-/// The browser that the pages at hand are open in.
+/// The browser of the currently open pages.
 static RUNNING: Mutex<Weak<Program>> = Mutex::new(Weak::new());
 
 impl Program {
-    /// The browser that runs, or a new one. Starting it takes longer than most tests.
+    /// Returns the running browser, or starts one. Starting takes longer than most tests.
     pub(super) fn running(browser: &Path) -> Arc<Program> {
-        // A test that failed here leaves what it found.
+        // After a failed test the value is still valid.
         let mut running = RUNNING.lock().unwrap_or_else(PoisonError::into_inner);
         running.upgrade().unwrap_or_else(|| {
             let program = Arc::new(Program::start(browser));
@@ -88,7 +88,7 @@ impl Program {
         Program { process: process.unwrap_or_else(|e| panic!("{}: {e}", browser.display())), profile }
     }
 
-    /// A web socket to it. It writes the port and path under which it listens into its profile.
+    /// Opens a web socket to the browser, which writes its port and path to a file in the profile.
     pub(super) fn socket(&self) -> WebSocket<TcpStream> {
         let file = self.profile.path().join("DevToolsActivePort");
         let started = Instant::now();
@@ -106,7 +106,7 @@ impl Program {
 }
 
 impl Drop for Program {
-    /// Asks it to end, so that it takes its processes with it, and then ends it.
+    /// Asks the browser to end, so that its child processes end too, and then kills it.
     fn drop(&mut self) {
         let close = json!({ "id": 0, "method": "Browser.close" });
         if self.socket().send(Message::text(close.to_string())).is_ok() {
@@ -115,7 +115,7 @@ impl Drop for Program {
                 sleep(Duration::from_millis(10));
             }
         }
-        // Both fail where it has ended already, which is what is wanted.
+        // Both fail if it has already ended, which is fine.
         let _ = self.process.kill();
         let _ = self.process.wait();
     }

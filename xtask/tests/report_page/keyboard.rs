@@ -3,7 +3,7 @@
 use crate::browser::Page;
 use crate::page;
 
-/// What has the focus, as its place among all that can have it; −1 for nothing.
+/// Index of the focused element among all focusable ones; −1 for none.
 const FOCUSED: &str = "all.indexOf(document.activeElement)";
 
 #[test]
@@ -13,9 +13,9 @@ fn tab_reaches_everything_in_order_and_it_is_seen() {
     page.evaluate::<()>(
         "void (all = [...document.querySelectorAll('a[href], button, input, select, summary, [tabindex=\"0\"]')])",
     );
-    // One stop for a group of radio buttons.
+    // A group of radio buttons is one stop.
     page.evaluate::<()>("void (all = all.filter(e => e.type != 'radio' || e.checked))");
-    // What is in a closed dialog is not there yet; contents fold on a phone only.
+    // Elements in a closed dialog are not reachable; the contents fold only on a phone.
     page.evaluate::<()>("void (all = all.filter(e => !e.closest('dialog, nav summary')))");
     let stops: i64 = page.evaluate("all.length");
     assert!(stops > 10, "{stops} stops");
@@ -27,7 +27,7 @@ fn tab_reaches_everything_in_order_and_it_is_seen() {
     }
 }
 
-/// Whether what has the focus is in the window and outlined.
+/// Whether the focused element is in the window and outlined.
 const IS_SEEN: &str = "(() => {
     const box = document.activeElement.getBoundingClientRect();
     const inside = box.bottom > 0 && box.top < innerHeight && box.right > 0 && box.left < innerWidth;
@@ -46,7 +46,7 @@ fn the_first_stop_skips_the_contents() {
 #[test]
 fn a_figure_is_enlarged_and_left_again() {
     let Some(mut page) = page() else { return };
-    // A page that still scrolls is clicked beside what was meant.
+    // While the page scrolls, a click would miss its target.
     page.prefer("prefers-reduced-motion", "reduce");
     page.evaluate::<()>("document.querySelector('.enlarge').focus()");
     page.press("Enter");
@@ -74,7 +74,7 @@ fn a_figure_is_enlarged_and_left_again() {
 const SAME_CAPTION: &str = "document.querySelector('#enlarged .caption').textContent ==
     document.querySelector('.enlarge').closest('figure').querySelector('figcaption').textContent";
 
-/// Whether the picture is in the middle of a frame that holds it whole, to the pixel.
+/// Whether the picture is centred in its frame and completely visible, to the pixel.
 const CENTRED: &str = "(() => {
     const [frame, picture] = ['.picture', '.picture img'].map(name =>
         document.querySelector('#enlarged ' + name).getBoundingClientRect());
@@ -99,7 +99,7 @@ fn a_figure_wider_than_the_window_begins_at_its_left() {
         let left: f64 = page.evaluate(left);
         assert!(left.abs() < 1.0, "{figure} begins {left} pixels off");
         assert!(page.evaluate::<bool>("!document.querySelector('#enlarged .caption strong').hidden"), "{figure}");
-        // Left somewhere else, for the next one.
+        // Scrolls the frame, to check that the next figure does not inherit the position.
         page.evaluate::<()>("frame.scrollLeft = 300; document.getElementById('enlarged').close()");
     }
 }

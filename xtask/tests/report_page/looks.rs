@@ -1,14 +1,14 @@
-//! The page in the light, in the dark and on a phone; its pictures.
+//! The page in light and dark mode and on a phone, and its pictures.
 
 use std::fs;
 
 use crate::page;
 use crate::report::report;
 
-/// Widths of windows, CSS pixels: a small phone, a phone, a tablet, a laptop.
+/// Window widths, CSS pixels: a small phone, a phone, a tablet, a laptop.
 const WIDTHS: [u32; 4] = [320, 390, 768, 1280];
 
-/// Kinds of words on the page.
+/// Kinds of text on the page.
 const WORDS: [&str; 9] = [
     "main p",
     "nav a",
@@ -21,13 +21,13 @@ const WORDS: [&str; 9] = [
     ".verdict.is-differs",
 ];
 
-/// Contrast that small text needs at least (WCAG, level AA).
+/// Minimum contrast of small text (WCAG, level AA).
 const CONTRAST: f64 = 4.5;
 
-/// Where the heading of the first table is at the latest, pixels from the top of the page in a window of 1280.
+/// Largest distance between the heading of the first table and the top of the page, pixels, in a window of width 1280.
 const FIRST_TABLE: f64 = 1600.0;
 
-/// Difference of a colour's parts up to which it is a grey.
+/// Largest difference between the components of a colour that counts as grey.
 const GREY: u8 = 32;
 
 #[test]
@@ -66,7 +66,7 @@ fn light_and_dark_are_readable() {
         backgrounds.push(page.evaluate::<String>("getComputedStyle(document.body).backgroundColor"));
         for what in WORDS {
             if !page.evaluate::<bool>(&format!("document.querySelector({what:?}) != null")) {
-                // A run need not have every verdict.
+                // A run may lack a verdict.
                 assert!(what.starts_with(".verdict"), "there is no {what}");
                 continue;
             }
@@ -77,7 +77,7 @@ fn light_and_dark_are_readable() {
     assert_ne!(backgrounds[0], backgrounds[1]);
 }
 
-/// Results first: nobody scrolls through reservations and glossaries to the first table.
+/// Results first: readers need not scroll through reservations and glossaries to the first table.
 #[test]
 fn the_first_table_comes_first_then_the_robot_then_what_was_fitted() {
     let Some(mut page) = page() else { return };
@@ -148,14 +148,14 @@ fn figures_are_light_or_dark_as_the_page_is() {
             let shades = page.shades(&format!("#{id} img"));
             let middle = shades[shades.len() / 2];
             assert!(paper.contains(&middle), "{id} in {scheme}: half of it is lighter than {middle}");
-            // What is not paper can be seen.
+            // The drawing is distinguishable from the paper.
             let (least, most) = (shades[shades.len() / 1000], shades[shades.len() - 1 - shades.len() / 1000]);
             assert!(most - least > 100, "{id} in {scheme}: from {least} to {most}");
         }
     }
 }
 
-/// Contrast of an element's letters with what is behind them, by the formula of WCAG 2.
+/// Contrast between an element's letters and its background, by the formula of WCAG 2.
 const CONTRAST_OF: &str = r"((selector) => {
     const channels = (color) => color.match(/[\d.]+/g).map(Number);
     const opaque = (element) => {

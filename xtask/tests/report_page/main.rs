@@ -16,10 +16,10 @@ mod words;
 use browser::Page;
 use report::report;
 
-/// Bytes that the page may have.
+/// Maximum size of the page, bytes.
 const LARGEST: u64 = 4_500_000;
 
-/// The page, unless there is no browser.
+/// The page; `None` without a browser.
 fn page() -> Option<Page> {
     Page::open(&report().join("report.html"))
 }

@@ -1,8 +1,8 @@
-//! The page as it is printed.
+//! The printed page.
 
 use crate::page;
 
-/// Width of a sheet of A4 between its margins, CSS pixels.
+/// Printable width of an A4 sheet, CSS pixels.
 const SHEET: u32 = 688;
 
 #[test]

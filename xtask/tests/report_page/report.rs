@@ -1,15 +1,15 @@
-//! The report of the committed records, as the program makes it.
+//! The report of the committed records, as the program generates it.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::OnceLock;
 
-/// The folder with report.html, made once for all tests of a program.
+/// The folder with report.html, generated once for all tests of a program.
 pub(crate) fn report() -> &'static Path {
     static FOLDER: OnceLock<PathBuf> = OnceLock::new();
     FOLDER.get_or_init(|| {
         let out = Path::new(env!("CARGO_TARGET_TMPDIR")).join(env!("CARGO_CRATE_NAME"));
-        // What an earlier run left is none of this one's.
+        // Removes the files of an earlier run.
         if out.exists() {
             std::fs::remove_dir_all(&out).unwrap();
         }

@@ -1,4 +1,4 @@
-//! What the tables show is what `results.json` holds.
+//! The tables show the contents of `results.json`.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -9,7 +9,7 @@ use serde_json::Value;
 
 use crate::page;
 
-/// What the page says of a cell, in one of the places where it does.
+/// The texts of a cell at one of its places on the page.
 #[derive(Debug, Deserialize)]
 struct Shown {
     experiment: String,
@@ -22,7 +22,7 @@ struct Shown {
     z: Option<String>,
     verdict: Option<String>,
     second: Option<String>,
-    /// Where each dot is, in pixels.
+    /// Position of each dot, pixels.
     dots: Vec<f64>,
 }
 
@@ -70,7 +70,7 @@ fn cells(results: &Value) -> Vec<Cell> {
     cells
 }
 
-/// A number as the tables print it: percents with two decimals, errors with four, small ones with six, what is nothing but rounding with one.
+/// A number as the tables print it: percentages with two decimals, errors with four, small ones with six, rounding errors with one digit.
 fn printed(measure: &str, value: &Value) -> String {
     beside(measure, value, value)
 }
@@ -95,7 +95,7 @@ fn beside(measure: &str, value: &Value, other: &Value) -> String {
     }
 }
 
-/// A figure of the paper: with no more digits than it was printed with.
+/// A number of the paper, with no more digits than it was printed with.
 fn as_in_the_paper(measure: &str, value: &Value) -> String {
     let text = printed(measure, value);
     text.strip_suffix("00").filter(|short| short.len() == "0.1234".len()).map_or(text.clone(), str::to_owned)
@@ -113,13 +113,13 @@ fn every_cell_is_shown_as_it_is() {
     let second: BTreeMap<_, _> = cells(&second).into_iter().map(|cell| (cell.name.clone(), cell.value)).collect();
     let cells = cells(&results(1));
     assert!(cells.len() > 100, "{} cells", cells.len());
-    // Learners beside the paper's have tables of their own.
+    // Additional learners have separate tables.
     for cell in cells.into_iter().filter(|cell| !cell.name[1].contains('/')) {
         let places = shown.remove(&cell.name).unwrap_or_else(|| panic!("{:?} is not on the page", cell.name));
         for place in &places {
             holds(&cell, place);
         }
-        // In one place all there is to know.
+        // One place shows all details.
         let whole = places.iter().find(|place| place.median.is_some());
         let whole = whole.unwrap_or_else(|| panic!("{:?} is nowhere shown in full", cell.name));
         holds_in_full(&cell, whole, second.get(&cell.name));
@@ -127,7 +127,7 @@ fn every_cell_is_shown_as_it_is() {
     assert!(shown.is_empty(), "on the page, but in no results: {:?}", shown.keys());
 }
 
-/// What every place shows: our mean, the paper's, the verdict, and each data set as a dot.
+/// Checks the contents of every place: our mean, the paper's, the verdict, and each data set as a dot.
 fn holds(cell: &Cell, place: &Shown) {
     let (measure, value) = (cell.name[2].as_str(), &cell.value);
     let mean_sd =
@@ -154,7 +154,7 @@ fn holds(cell: &Cell, place: &Shown) {
     assert!(dots.len() as u64 <= cell.data_sets - cell.failed, "{:?}", cell.name);
 }
 
-/// Median, number of data sets, how sure the difference is, and the other seed.
+/// Checks median, number of data sets, significance of the difference, and the other seed.
 fn holds_in_full(cell: &Cell, place: &Shown, second: Option<&Value>) {
     let (measure, value) = (cell.name[2].as_str(), &cell.value);
     assert_eq!(place.median.as_ref(), Some(&printed(measure, &value["median"])), "{:?}", cell.name);
@@ -178,7 +178,7 @@ fn holds_in_full(cell: &Cell, place: &Shown, second: Option<&Value>) {
 fn the_opening_counts_every_printed_cell() {
     let Some(mut page) = page() else { return };
     let mut counted: BTreeMap<String, u32> = BTreeMap::new();
-    // The literal reading is held against numbers that are counted already.
+    // The literal reading is compared with numbers that already count.
     for cell in cells(&results(1)).iter().filter(|cell| cell.name[0] != "table1-literal") {
         if let Some(verdict) = cell.value["verdict"].as_str() {
             *counted.entry(verdict.to_owned()).or_default() += 1;

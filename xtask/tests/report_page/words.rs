@@ -1,4 +1,4 @@
-//! What is said at a glance, how words are set, and what is read out.
+//! Statements in the opening, typesetting, and texts for screen readers.
 
 use std::fs;
 
@@ -42,7 +42,7 @@ fn pictures_that_differ_are_named() {
         assert!(named.iter().any(|(other, _)| *other == hash), "{id}: {named:?}");
         assert!(page.evaluate::<bool>(&format!("document.querySelector('{hash}') != null")), "{id}");
     }
-    // Where hands end: this run is the full one that the words speak of.
+    // Final positions of hands: this run is the full one to which the text refers.
     let ends = fs::read_to_string(report().join("figures/figure8-ends.csv")).unwrap();
     let rows: Vec<Vec<&str>> = ends.lines().map(|line| line.split(',').collect()).collect();
     let words = &named.iter().find(|(hash, _)| hash == "#figure-figure8").unwrap().1;
@@ -69,7 +69,7 @@ fn numbers_verdicts_and_names_keep_apart() {
     assert!(page.evaluate::<bool>(beside_label), "on a phone verdicts take a line of their own");
 }
 
-/// Cells in which two of name, number and verdict are nearer than 4 pixels on a line.
+/// Cells in which name, number or verdict are less than 4 pixels apart on a line.
 const TOUCHING: &str = "(() => {
     const box = (element) => {
         const range = document.createRange();
@@ -110,7 +110,7 @@ fn nothing_of_a_figure_is_read_out_twice() {
     assert!(titles.len() > 8, "{titles:?}");
     let spoken = page.accessible();
     for title in titles {
-        // In the contents, in a heading or in a caption.
+        // The title may occur only in the contents, in a heading or in a caption.
         let again = |(role, name): &&(String, String)| {
             name.contains(&title) && !["link", "heading", "StaticText", "InlineTextBox"].contains(&role.as_str())
         };

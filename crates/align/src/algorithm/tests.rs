@@ -1,4 +1,4 @@
-//! Alignment with H and without finds the same.
+//! Alignment with and without H gives the same result.
 
 use super::*;
 use demo_gen::tasks::CyclesWithTask;
@@ -11,7 +11,7 @@ use proptest::prelude::*;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
-/// Aligns with H and without, and compares: all bits of σ², groups, λ₂, and offsets to the error that λ₂ allows.
+/// Aligns with and without H, and compares: all bits of σ², groups, λ₂; offsets up to the error that λ₂ allows.
 fn both(learner: &PolicyAlign, demonstrations: &Demonstrations) {
     let dense = learner.align_with(&|_, _| false, demonstrations).unwrap();
     let sparse = learner.align_with(&|_, _| true, demonstrations).unwrap();
@@ -47,7 +47,7 @@ fn toy_systems_are_aligned_alike_without_h() {
     }
 }
 
-/// Two data sets of an experiment, or `SETS`; `record` makes one.
+/// Runs two data sets of an experiment, or `SETS`; `record` makes one.
 fn sets(record: impl Fn(&mut ChaCha8Rng) -> Vec<Recording>) {
     for seed in 0..std::env::var("SETS").map_or(2, |sets| sets.parse().expect("a number of data sets")) {
         let recordings = record(&mut ChaCha8Rng::seed_from_u64(seed));
@@ -93,7 +93,7 @@ fn many_movements_are_aligned_alike_without_h() {
 
 #[test]
 fn a_long_chain_comes_apart_without_h() {
-    // Neighbours are linked by 1e4 thresholds and more, but λ₂ is smaller by (π / 760)².
+    // Neighbours are linked by 1e4 thresholds or more, but λ₂ is smaller by (π / 760)².
     let mut x = 0.0;
     let movements = (0..760).map(|k| {
         x += 1.0 + 0.01 * (f64::from(k) * 0.7).sin();
@@ -122,7 +122,7 @@ fn no_number_of_threads_changes_a_bit() {
 
 #[test]
 fn what_touches_is_named_without_all_distances() {
-    // Two of three movements cross at a sample, and so do two others.
+    // Two of three movements meet at a sample, and so do two others.
     let at = |x: f64| DMatrix::from_row_slice(2, 3, &[x, x + 1.0, x + 2.0, 0.0, x, 0.5]);
     let movements = [at(0.0), at(0.0), at(3.0), at(7.0), at(7.0)];
     let demonstrations = Demonstrations::from_states(movements, 1.0).unwrap();
@@ -140,7 +140,7 @@ fn too_many_samples_for_the_memory_are_refused() {
     let demonstrations = demonstrations(&toy.record(&mut ChaCha8Rng::seed_from_u64(1)).unwrap()).unwrap();
     let error = PolicyAlign { memory_limit: 10_000, ..PolicyAlign::default() }.align(&demonstrations).unwrap_err();
     let AlignError::Memory { needed, limit: 10_000 } = error else { panic!("{error}") };
-    // States, places and boxes alone are 16 + 8 + 4 bytes a sample.
+    // States, places and boxes alone take 16 + 8 + 4 bytes per sample.
     assert!((28 * 20 * MANY as u64..1_000_000).contains(&needed), "{needed}");
 }
 

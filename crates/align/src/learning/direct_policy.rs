@@ -9,8 +9,8 @@ use crate::{AlignError, Origin};
 
 /// The policy of direct policy learning.
 ///
-/// Far from the data no receptive field takes part: the action is then the mean of the training velocities. It can be
-/// stored with serde; what is read back acts the same to the last bit.
+/// Far from the data no receptive field takes part; the action is then the mean of the training velocities. The policy
+/// can be stored with serde; after reading, its actions are the same to the last bit.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(try_from = "PolicyRecord", into = "PolicyRecord")]
 pub struct DirectPolicy {
@@ -19,22 +19,22 @@ pub struct DirectPolicy {
 }
 
 impl DirectPolicy {
-    /// Of a regression with as many outputs as inputs.
+    /// From a regression with as many outputs as inputs.
     pub(crate) fn new(regression: StandardisedModel, origin: Origin) -> Self {
         DirectPolicy { regression, origin }
     }
 
-    /// The underlying regression: its mean is that of the training velocities, in units of the state per second.
+    /// The underlying regression. Its mean is that of the training velocities, in units of the state per second.
     pub fn regression(&self) -> &StandardisedModel {
         &self.regression
     }
 
-    /// Summary of its training data.
+    /// Summary of the training data.
     pub fn origin(&self) -> &Origin {
         &self.origin
     }
 
-    /// The same policy, of which receptive fields take part as soon as their activation exceeds `cutoff`.
+    /// The same policy with another cutoff: receptive fields take part if their activation exceeds `cutoff`.
     ///
     /// # Errors
     /// [`AlignError::Lwpr`] if `cutoff` is not at least 0 and less than 1.
@@ -45,7 +45,7 @@ impl DirectPolicy {
     /// The same policy with names and units of its dimensions, n of them or none.
     ///
     /// # Errors
-    /// [`AlignError::Channels`] if there is not one for each dimension.
+    /// [`AlignError::Channels`] if their number differs from the dimension.
     pub fn with_channels(self, channels: Vec<Channel>) -> Result<Self, AlignError> {
         let origin = self.origin.with_channels(channels, self.regression.n_in())?;
         Ok(DirectPolicy { origin, ..self })
@@ -67,8 +67,8 @@ impl Policy for DirectPolicy {
 }
 
 impl LearntPolicy for DirectPolicy {
-    /// The largest activation of a receptive field, in the dimension that has least of it, or 0 where no field exceeds
-    /// the cutoff in some dimension.
+    /// The largest activation of a receptive field, in the dimension where it is smallest; 0 if in some dimension no
+    /// field exceeds the cutoff.
     fn support(&self, state: DVectorView<'_, f64>) -> f64 {
         support(&self.regression, state)
     }

@@ -8,10 +8,10 @@ use crate::{AlignError, DirectPolicy, LwprRegressor, Origin};
 
 /// Direct policy learning, the naive baseline: regression of the observed velocities on the states, ignoring constraints.
 ///
-/// It learns from all trajectories: the recorded velocities, or else u_i = (x_{i+1} − x_i) / δt for all samples but the
-/// last.
+/// Learns from all trajectories: from the recorded velocities, or else from u_i = (x_{i+1} − x_i) / δt for all samples
+/// except the last.
 ///
-/// It is stored as its regressor is.
+/// Stored in the form of its regressor.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct DirectPolicyLearning {
@@ -23,7 +23,7 @@ impl DirectPolicyLearning {
     /// Learns from all samples but those held out.
     ///
     /// # Errors
-    /// [`AlignError::Lwpr`] for parameters out of range, [`AlignError::NoSamples`] if no sample is left.
+    /// [`AlignError::Lwpr`] for parameters out of range, [`AlignError::NoSamples`] if no sample remains.
     pub fn learn_policy(
         &self,
         demonstrations: &Demonstrations,
@@ -48,7 +48,7 @@ impl Learner for DirectPolicyLearning {
     }
 }
 
-/// States (n, M) and velocities (n, M) of all samples that have one and are not held out.
+/// States (n, M) and velocities (n, M) of all samples that have a velocity and are not held out.
 fn observed(demonstrations: &Demonstrations, held_out: &[SampleIndex]) -> (DMatrix<f64>, DMatrix<f64>) {
     let held_out = SampleSet::of(held_out);
     let mut states = Vec::new();

@@ -2,10 +2,10 @@ use lwpr::StandardisedModel;
 use motion::Potential;
 use nalgebra::{DVectorView, DVectorViewMut};
 
-/// The potential f (23) that LWPR learnt from levelled samples.
+/// The potential f (23) that LWPR learnt from aligned samples.
 ///
-/// Far from the data no receptive field takes part: the value is then the mean of the training values, and the gradient
-/// zero.
+/// Far from the data no receptive field takes part; the value is then the mean of the training values, and the gradient
+/// is zero.
 #[derive(Debug, Clone)]
 pub struct GlobalPotential {
     regression: StandardisedModel,
@@ -16,7 +16,7 @@ impl GlobalPotential {
         GlobalPotential { regression }
     }
 
-    /// The underlying regression: its mean is that of the training values, its spread (`norm_out`) theirs, too.
+    /// The underlying regression. Its mean and its spread (`norm_out`) are those of the training values.
     pub fn regression(&self) -> &StandardisedModel {
         &self.regression
     }

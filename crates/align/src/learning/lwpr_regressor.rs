@@ -6,16 +6,16 @@ use serde::{Deserialize, Serialize};
 use super::regression::spread;
 use crate::{AlignError, GlobalPotential, Regressor};
 
-/// Learns by locally weighted projection regression, from values that are centred: a potential (23), or velocities in
+/// Locally weighted projection regression on centred values: a potential (23), or velocities in
 /// [`DirectPolicyLearning`](crate::DirectPolicyLearning).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct LwprRegressor {
     /// Parameters of LWPR, in units of `norm_in`: by default `init_d` 10, `w_gen` 0.5 and `penalty` 1e-5, the rest as in
-    /// [`LwprParams::default`]. Where `norm_in` is `None`, all dimensions are divided by one number, the root mean square
-    /// of their standard deviations; where `norm_out` is `None`, the values are divided by their standard deviation.
+    /// [`LwprParams::default`]. If `norm_in` is `None`, all dimensions are divided by one number, the root mean square of their
+    /// standard deviations; if `norm_out` is `None`, the values are divided by their standard deviation.
     pub params: LwprParams,
-    /// How often all samples are learnt, each time in a fresh random order; 10 by default.
+    /// Number of passes over all samples, each in a new random order; 10 by default.
     pub passes: usize,
     /// Receptive fields take part in a prediction if their activation exceeds this; in [0, 1), 1e-3 by default.
     pub cutoff: f64,
@@ -23,15 +23,15 @@ pub struct LwprRegressor {
 
 impl Default for LwprRegressor {
     fn default() -> Self {
-        // The paper's tables come out with LWPR's own on undivided values: narrower fields (`init_d` 25), fewer of them (`w_gen`
-        // 0.1), hardly a penalty (1e-6).
+        // The paper's tables are reproduced with LWPR's own defaults on undivided values: narrower fields (`init_d` 25), fewer
+        // of them (`w_gen` 0.1), almost no penalty (1e-6).
         let params = LwprParams { init_d: 10.0, w_gen: 0.5, penalty: 1e-5, ..LwprParams::default() };
         LwprRegressor { params, passes: 10, cutoff: 1e-3 }
     }
 }
 
 impl LwprRegressor {
-    /// Learns `outputs` (n_out, M) from `states` (n, M), one column a sample.
+    /// Learns `outputs` (n_out, M) from `states` (n, M), one column per sample.
     pub(crate) fn regression(
         &self,
         states: &DMatrix<f64>,

@@ -1,4 +1,4 @@
-//! The two learners, their policies and potentials, and the stored forms of these.
+//! The two learners, their policies and potentials, and the stored forms of the policies.
 
 mod direct_policy;
 mod direct_policy_learning;

@@ -1,4 +1,4 @@
-//! From aligned potentials to a global one and its policy (23).
+//! From aligned potentials to a global potential and its policy (23).
 
 use motion::SampleIndex;
 use rand::Rng;
@@ -14,10 +14,10 @@ impl Aligned {
         self.learn_without(&[], regressor, rng)
     }
 
-    /// Learns the policy from all samples of the kept trajectories but those held out.
+    /// Learns the policy from all samples of the kept trajectories except those held out.
     ///
     /// # Errors
-    /// As [`Aligned::learn`], and [`AlignError::NoSamples`] if none is left.
+    /// As [`Aligned::learn`], and [`AlignError::NoSamples`] if no sample remains.
     pub fn learn_without(
         &self,
         held_out: &[SampleIndex],
@@ -33,7 +33,7 @@ impl Aligned {
     /// Learns the global potential (23) from all or some of the samples, by any regressor.
     ///
     /// # Errors
-    /// Those of the regressor.
+    /// The errors of the regressor.
     pub fn regress<G: Regressor + ?Sized>(
         &self,
         regressor: &G,

@@ -7,11 +7,11 @@ use crate::AlignError;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Origin {
-    /// Seconds between two samples: the median over the trajectories.
+    /// Seconds between two samples, as the median over the trajectories.
     pub time_step: f64,
     /// Number of trajectories.
     pub n_trajectories: usize,
-    /// Those that were learnt from, ascending; none if all were.
+    /// The trajectories that were learnt from, ascending; `None` if all were.
     pub kept: Option<Vec<usize>>,
     /// Warnings, one sentence each.
     pub warnings: Vec<String>,
@@ -31,7 +31,7 @@ impl Origin {
         }
     }
 
-    /// With names and units of `dim` dimensions, or none.
+    /// With names and units for the `dim` dimensions, or none.
     pub(crate) fn with_channels(self, channels: Vec<Channel>, dim: usize) -> Result<Self, AlignError> {
         if channels.is_empty() || channels.len() == dim {
             return Ok(Origin { channels, ..self });
@@ -39,7 +39,7 @@ impl Origin {
         Err(AlignError::Channels { found: channels.len(), expected: dim })
     }
 
-    /// What is wrong with it as that of a policy of so many dimensions.
+    /// Checks the summary for a policy with `dim` dimensions; the error describes the fault.
     pub(crate) fn check(&self, dim: usize) -> Result<(), &'static str> {
         let kept = self.kept.as_deref();
         let ascending = |kept: &[usize]| {

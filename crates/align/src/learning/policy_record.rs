@@ -5,10 +5,10 @@ use serde::{Deserialize, Serialize};
 
 use crate::{AlignError, Origin};
 
-/// The form that is written; a program reads this and all before it.
+/// The version that is written; a program reads this and all previous ones.
 const VERSION: u32 = 1;
 
-/// A learnt policy. What tells the format comes first, so that a text of another is refused by that.
+/// A learnt policy. The format comes first, so that text in another format is refused for that reason.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct PolicyRecord {
@@ -19,7 +19,7 @@ pub(crate) struct PolicyRecord {
     regression: StandardisedModel,
 }
 
-/// Which kind of policy it is.
+/// The kind of policy.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) enum Format {
     #[serde(rename = "potential policy")]
@@ -52,7 +52,7 @@ impl PolicyRecord {
         PolicyRecord { format, version: Version, dim: regression.n_in(), origin, regression }
     }
 
-    /// Origin and regression of a policy of this format, with so many outputs for n inputs.
+    /// Checks the format and returns origin and regression of a policy, with `n_out(n)` outputs for n inputs.
     pub(super) fn check(
         self,
         format: Format,

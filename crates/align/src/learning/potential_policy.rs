@@ -6,11 +6,11 @@ use super::policy_record::{Format, PolicyRecord};
 use super::regression::support;
 use crate::{AlignError, GlobalPotential, Origin};
 
-/// The policy π̂(x) = −∇f(x) of a potential f that was learnt from aligned demonstrations; the gradient is that of the
-/// predictor itself.
+/// The policy π̂(x) = −∇f(x) of a potential f learnt from aligned demonstrations. The gradient is the exact derivative
+/// of the predictor.
 ///
-/// Far from the data no receptive field takes part: the action is then zero. It can be stored with serde; what is read
-/// back acts the same to the last bit.
+/// Far from the data no receptive field takes part; the action is then zero. The policy can be stored with serde; after
+/// reading, its actions are the same to the last bit.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(try_from = "PolicyRecord", into = "PolicyRecord")]
 pub struct PotentialPolicy {
@@ -28,13 +28,13 @@ impl PotentialPolicy {
         &self.descent.0
     }
 
-    /// Summary of its training data.
+    /// Summary of the training data.
     pub fn origin(&self) -> &Origin {
         &self.origin
     }
 
-    /// The same policy, of which receptive fields take part as soon as their activation exceeds `cutoff`. Roll-outs that
-    /// leave the data want a tiny one, 1e-9.
+    /// The same policy with another cutoff: receptive fields take part if their activation exceeds `cutoff`. Roll-outs
+    /// that leave the data need a tiny one, 1e-9.
     ///
     /// # Errors
     /// [`AlignError::Lwpr`] if `cutoff` is not at least 0 and less than 1.
@@ -46,7 +46,7 @@ impl PotentialPolicy {
     /// The same policy with names and units of its dimensions, n of them or none.
     ///
     /// # Errors
-    /// [`AlignError::Channels`] if there is not one for each dimension.
+    /// [`AlignError::Channels`] if their number differs from the dimension.
     pub fn with_channels(self, channels: Vec<Channel>) -> Result<Self, AlignError> {
         let origin = self.origin.with_channels(channels, self.descent.dim())?;
         Ok(PotentialPolicy { origin, ..self })
@@ -68,7 +68,7 @@ impl LearntPolicy for PotentialPolicy {
         Some(self.global_potential())
     }
 
-    /// The largest activation of a receptive field, or 0 where none exceeds the cutoff.
+    /// The largest activation of a receptive field, or 0 if none exceeds the cutoff.
     fn support(&self, state: DVectorView<'_, f64>) -> f64 {
         support(self.global_potential().regression(), state)
     }

@@ -4,7 +4,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::{AlignError, LwprRegressor, PolicyAlign, PotentialPolicy};
 
-/// Algorithm 1 of the paper as a whole: aligns the demonstrations, learns one potential and descends it.
+/// The complete Algorithm 1 of the paper: aligns the demonstrations, learns one potential and descends
+/// it.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct PotentialPolicyLearning {
@@ -17,8 +18,9 @@ pub struct PotentialPolicyLearning {
 impl PotentialPolicyLearning {
     /// Aligns all samples, and learns from those that are kept and not held out.
     ///
-    /// Whoever draws held-out samples from the kept trajectories has aligned already, and goes on with
-    /// [`Aligned::learn_without`](crate::Aligned::learn_without): the same policy to the last bit.
+    /// To draw held-out samples from the kept trajectories, align first and continue with
+    /// [`Aligned::learn_without`](crate::Aligned::learn_without), which gives the same policy to the
+    /// last bit.
     ///
     /// # Errors
     /// As [`PolicyAlign::align`] and [`Aligned::learn_without`](crate::Aligned::learn_without).

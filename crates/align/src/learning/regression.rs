@@ -1,14 +1,14 @@
-//! What both learners need of LWPR: one length for all dimensions, and support.
+//! Helpers of both learners for LWPR: one length for all dimensions, and support.
 
 use lwpr::StandardisedModel;
 use motion::standard_deviation;
 use nalgebra::{DMatrix, DVectorView};
 
-/// Dimensions that vary by less than this share of the one that varies most are idle.
+/// A dimension is idle if it varies by less than this share of the one that varies most.
 const IDLE: f64 = 1e-3;
 
-/// The largest activation of a receptive field at a state, (n), for the output that has least of it; 0 if no field takes
-/// part in the prediction of some output.
+/// The largest activation of a receptive field at a state, (n), for the output where it is smallest; 0 if for some
+/// output no field takes part in the prediction.
 pub(crate) fn support(model: &StandardisedModel, state: DVectorView<'_, f64>) -> f64 {
     let of = |output| {
         if model.supports(state, output) { model.predictor().max_activation(state, output) } else { 0.0 }
@@ -16,18 +16,18 @@ pub(crate) fn support(model: &StandardisedModel, state: DVectorView<'_, f64>) ->
     (0..model.n_out()).map(of).fold(f64::INFINITY, f64::min)
 }
 
-/// One length for all dimensions: the root mean square of the states' standard deviations, idle dimensions aside; 1 if
+/// One length for all dimensions: the root mean square of the states' standard deviations, without idle dimensions; 1 if
 /// nothing moves.
 ///
 /// Distances between states are Euclidean in the alignment and in the policy's gradient; receptive fields that are round
-/// in the same sense keep it so.
+/// in this metric are consistent with them.
 pub(crate) fn spread(states: &DMatrix<f64>) -> f64 {
     let deviations: Vec<f64> = states.row_iter().map(|row| standard_deviation(row.iter().copied())).collect();
     let largest = deviations.iter().copied().fold(0.0, f64::max);
     if largest == 0.0 {
         return 1.0;
     }
-    // Relative to the largest, so that squares neither overflow nor underflow.
+    // Relative to the largest, to avoid overflow and underflow of squares.
     let squares = deviations.iter().map(|deviation| deviation / largest).filter(|&share| share >= IDLE);
     let squares: Vec<f64> = squares.map(|share| share * share).collect();
     largest * (squares.iter().sum::<f64>() / squares.len() as f64).sqrt()

@@ -6,26 +6,28 @@ use nalgebra::DMatrix;
 use super::two_means::two_means;
 use crate::{AlignError, Split, SplitCause};
 
-/// The trajectories in groups whose offsets to each other the data do not determine (Sec. 3.3, App. B).
+/// Groups of trajectories whose relative offsets the data do not determine (Sec. 3.3, App. B).
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Partition {
-    /// Each ascending; the largest first, equally large ones by lowest trajectory.
+    /// Each ascending; the largest first, groups of equal size by lowest trajectory.
     pub(crate) groups: Vec<Vec<usize>>,
-    /// How they came about, a group always before its parts.
+    /// The splits that led to them; a group always comes before its parts.
     pub(crate) splits: Vec<Split>,
-    /// λ₂ of the first group: how firmly its weakest part hangs on; none for a single trajectory.
+    /// λ₂ of the first group, which measures how strongly its weakest part is connected; `None` for a single
+    /// trajectory.
     pub(crate) lambda_2: Option<f64>,
-    /// Eigenvalue problems that it took.
+    /// Number of eigenvalue problems solved.
     pub(crate) decompositions: usize,
 }
 
-/// Recursive bi-partition: as long as the sub-matrix of H of a group has more than one eigenvalue below `threshold`,
-/// its trajectories fall in two clusters by their entries in those eigenvectors.
+/// Recursive bi-partition: while the sub-matrix of H for a group has more than one eigenvalue below `threshold`, its
+/// trajectories are divided into two clusters by their entries in those eigenvectors.
 ///
-/// Parts without any link between them come apart beforehand, by exact zeros of H.
+/// Parts without any link between them are separated beforehand, by exact zeros of H.
 ///
-/// A node may stand for several trajectories that move together: `masses` says how many, and the entry of `laplacian`
-/// for nodes s and t is then that of H, summed over their trajectories, over √(mass of s · mass of t).
+/// A node may stand for several trajectories that move together: `masses` contains their number. The entry of
+/// `laplacian` for nodes s and t is then that of H, summed over their trajectories, divided by √(mass of s · mass of
+/// t).
 pub(crate) fn bipartition(laplacian: &DMatrix<f64>, masses: &[f64], threshold: f64) -> Result<Partition, AlignError> {
     let mut splits = Vec::new();
     let mut open = linked_parts(laplacian, (0..laplacian.ncols()).collect(), &mut splits);
@@ -52,10 +54,11 @@ pub(crate) fn bipartition(laplacian: &DMatrix<f64>, masses: &[f64], threshold: f
     Ok(Partition { groups, splits, lambda_2, decompositions })
 }
 
-/// The second eigenvalue of a group's matrix, and all eigenvectors below the threshold, or none if at most one is.
+/// The second eigenvalue of a group's matrix, and all eigenvectors below the threshold, or none if there is at most
+/// one.
 ///
-/// Most groups hold together, and eigenvalues alone cost half as much. Vectors are computed right away where a weak
-/// trajectory is in sight: its unit vector has the Rayleigh quotient H_kk.
+/// Most groups are connected, and eigenvalues alone cost half as much. Vectors are computed at once if there is
+/// evidence of a weakly connected trajectory: its unit vector has the Rayleigh quotient H_kk.
 fn weak_part(
     matrix: &DMatrix<f64>,
     threshold: f64,
@@ -74,7 +77,7 @@ fn weak_part(
     Ok((values[1], vectors.columns(0, weak(&values)).into_owned()))
 }
 
-/// The parts of a group that any links connect; a split if there are several.
+/// The parts of a group that are connected by any links; records a split if there are several.
 fn linked_parts(laplacian: &DMatrix<f64>, group: Vec<usize>, splits: &mut Vec<Split>) -> Vec<Vec<usize>> {
     let parts = components(laplacian, group.clone());
     if parts.len() > 1 {
@@ -83,7 +86,7 @@ fn linked_parts(laplacian: &DMatrix<f64>, group: Vec<usize>, splits: &mut Vec<Sp
     parts
 }
 
-/// The parts of a group that any links connect, each ascending: a flood from each lowest member yet dry.
+/// The connected components of a group, each ascending, by a flood fill from each lowest unvisited member.
 fn components(laplacian: &DMatrix<f64>, group: Vec<usize>) -> Vec<Vec<usize>> {
     let mut dry = group;
     let mut parts = Vec::new();
@@ -103,9 +106,9 @@ fn components(laplacian: &DMatrix<f64>, group: Vec<usize>) -> Vec<Vec<usize>> {
     parts
 }
 
-/// The two sides of a group by the rows of its weak eigenvectors; none if it holds together.
+/// The two sides of a group by the rows of its weak eigenvectors; `None` if it is connected.
 ///
-/// Where all eigenvalues are weak, so are those of every part (they interlace): its members are alone at once.
+/// If all eigenvalues are weak, so are those of every part (they interlace), so all members become separate at once.
 fn cut(group: &[usize], mut weak_vectors: DMatrix<f64>, masses: &[f64]) -> Option<Vec<Vec<usize>>> {
     if weak_vectors.ncols() <= 1 {
         return None;
@@ -113,7 +116,7 @@ fn cut(group: &[usize], mut weak_vectors: DMatrix<f64>, masses: &[f64]) -> Optio
     if weak_vectors.ncols() == group.len() {
         return Some(group.iter().map(|&k| vec![k]).collect());
     }
-    // What each of a node's trajectories has in an eigenvector.
+    // Entries of each of a node's trajectories in an eigenvector.
     let masses: Vec<f64> = group.iter().map(|&k| masses[k]).collect();
     weak_vectors.row_iter_mut().zip(&masses).for_each(|(mut row, mass)| row /= mass.sqrt());
     let in_second = two_means(&weak_vectors, &masses);
@@ -161,7 +164,7 @@ mod tests {
 
     #[test]
     fn splits_tell_how_groups_came_about() {
-        // Two trios, of which one hangs together by a link that is too weak, and one without any.
+        // Two groups of three: one connected by a link that is too weak, and one without a weak link.
         let links = [(0, 1, 1.0), (1, 4, 1e-12), (2, 3, 1.0), (3, 5, 1.0)];
         let partition = level(&graph(6, &links)).unwrap();
         assert_eq!(partition.groups, [vec![2, 3, 5], vec![0, 1], vec![4]]);
@@ -197,7 +200,7 @@ mod tests {
 
     #[test]
     fn many_lonely_trajectories_take_one_decomposition() {
-        // Peeled off one at a time, each by a decomposition, they would take minutes.
+        // Separated one at a time, each with a decomposition, they would take minutes.
         let alone: Vec<Vec<usize>> = (0..300).map(|k| vec![k]).collect();
         let links: Vec<_> = (1..300).map(|k| (k - 1, k, 1e-12)).collect();
         for (links, decompositions) in [(&[][..], 0), (&links, 1)] {
@@ -207,7 +210,7 @@ mod tests {
         }
     }
 
-    /// Links of any strength, many of them too weak.
+    /// Graphs with links of any strength, many of them too weak.
     fn weak_graphs() -> impl Strategy<Value = DMatrix<f64>> {
         (1usize..14, vec((0usize..14, 0usize..14, -20.0..0.0_f64), 0..30)).prop_map(|(count, links)| {
             let links = links.into_iter().map(|(k, j, exponent)| (k % count, j % count, 10.0_f64.powf(exponent)));
@@ -215,7 +218,7 @@ mod tests {
         })
     }
 
-    /// Whether a split is what its cause makes of its group.
+    /// Whether a split follows from its cause.
     fn follows_from_its_cause(split: &Split, laplacian: &DMatrix<f64>) -> bool {
         let SplitCause::WeakEigenvalues(weak) = split.cause else {
             return components(laplacian, split.group.clone()) == split.parts;
@@ -234,7 +237,7 @@ mod tests {
             let Partition { groups, splits, .. } = level(&laplacian).unwrap();
             let mut leaves = vec![(0..laplacian.ncols()).collect::<Vec<_>>()];
             for split in &splits {
-                // A group is split once, after the split that it is a part of.
+                // A group is split once, after the split that created it.
                 let at = leaves.iter().position(|leaf| *leaf == split.group);
                 leaves.remove(at.unwrap());
                 leaves.extend(split.parts.clone());

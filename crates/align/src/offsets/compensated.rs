@@ -1,4 +1,5 @@
-/// A sum that keeps what rounding drops (Neumaier): as if added in twice the precision.
+/// A compensated sum (Neumaier), which keeps what rounding drops, as if added in twice the
+/// precision.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct CompensatedSum {
     sum: f64,
@@ -13,13 +14,13 @@ impl CompensatedSum {
         self.sum = sum;
     }
 
-    /// Adds another sum with what it kept.
+    /// Adds another sum with its compensation.
     pub(crate) fn add_sum(&mut self, other: Self) {
         self.add(other.sum);
         self.dropped += other.dropped;
     }
 
-    /// The sum; infinite once it has overflowed.
+    /// The sum; infinite after an overflow.
     pub(crate) fn value(&self) -> f64 {
         if self.sum.is_finite() { self.sum + self.dropped } else { self.sum }
     }

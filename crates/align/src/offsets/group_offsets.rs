@@ -5,14 +5,14 @@ use super::linear_term::linear_term;
 use super::responsibilities::Responsibilities;
 use crate::{AlignError, AlignmentObjective};
 
-/// The first solution is good to 1e-16 / λ₂; the second levels what that left.
+/// The first solution is accurate to 1e-16 / λ₂; the second corrects the remainder.
 const ROUNDS: usize = 2;
 
-/// The offsets b = −H⁺a (17) of a group of trajectories, in the order of the group and with sum 0, by the mutual
+/// The offsets b = −H⁺a (17) of a group of trajectories, in the order of the group and with sum 0, from the mutual
 /// weights of its members.
 ///
-/// The right-hand side a is evaluated anew from the raised values, f + b, after each solution: what remains to be
-/// levelled is small there, and so is its rounding error.
+/// After each solution, the right-hand side a is computed again from the shifted values f + b. The remainder is small
+/// there, and so is its rounding error.
 pub(crate) fn group_offsets(
     responsibilities: &Responsibilities,
     objective: &AlignmentObjective,
@@ -48,7 +48,7 @@ mod tests {
     use proptest::collection::vec;
     use proptest::prelude::*;
 
-    /// Trajectories of 2 to 9 samples in two dimensions, with any values of the potential.
+    /// Trajectories of 2 to 9 samples in two dimensions, with arbitrary values of the potential.
     fn movements() -> impl Strategy<Value = (Vec<DMatrix<f64>>, Vec<Vec<f64>>)> {
         let movement = (2usize..10).prop_flat_map(|n| {
             (vec(-1.0..1.0, 2 * n).prop_map(move |x| DMatrix::from_vec(2, n, x)), vec(-5.0..5.0, n))
@@ -86,15 +86,15 @@ mod tests {
             let mean = group.iter().map(|&k| raises[k]).sum::<f64>() / group.len() as f64;
             for (at, &k) in group.iter().enumerate() {
                 let expected = offsets[at] - (raises[k] - mean);
-                // Adding 100 costs the potentials themselves 1e-14, and weak links pass that on 1e8-fold at most.
+                // Adding 100 changes the potentials themselves by 1e-14, and weak links amplify that at most 1e8-fold.
                 prop_assert!((lowered[at] - expected).abs() < 1e-10, "{} {expected}", lowered[at]);
             }
         }
 
         #[test]
         fn weak_links_lose_no_digits(distance in 5.9..6.05, value in -1.0_f64..1.0) {
-            // Two pairs at one place each, joined by the weight exp(−d²/2) ≈ 1e-8 of the values at their ends only:
-            // whatever the strong links carry, the step between the pairs is what the ends say.
+            // Two pairs, each at one place, joined only by the weight exp(−d²/2) ≈ 1e-8 between the values at their
+            // ends. Whatever the strong links contribute, the step between the pairs is determined by the ends.
             let at = |x: f64| DMatrix::from_row_slice(1, 2, &[x, x]);
             let positions = [at(0.0), at(0.0), at(distance), at(distance)];
             let potentials = [vec![0.0, 0.0], vec![value; 2], vec![3.0; 2], vec![1000.0 * value; 2]];

@@ -1,6 +1,6 @@
 use nalgebra::DMatrix;
 
-/// The Laplacian of the graph among `group` alone: the same mutual weights, nothing to outsiders.
+/// The Laplacian of the graph of `group` alone, with the same mutual weights and no links to others.
 pub(crate) fn of_group(laplacian: &DMatrix<f64>, group: &[usize]) -> DMatrix<f64> {
     let mut own = laplacian.select_rows(group).select_columns(group);
     own.fill_diagonal(0.0);
@@ -10,23 +10,23 @@ pub(crate) fn of_group(laplacian: &DMatrix<f64>, group: &[usize]) -> DMatrix<f64
     own
 }
 
-/// Gaussian elimination of a graph Laplacian that never subtracts (Grassmann, Taksar, Heyman).
+/// Gaussian elimination of a graph Laplacian without subtractions (Grassmann, Taksar, Heyman).
 ///
-/// To eliminate a node of a weighted graph is to join its neighbours in its stead, w_ij += w_ip w_jp / Σ_i w_ip: all
-/// terms are positive, so that every entry keeps its relative accuracy however weak the links are, and a node without
-/// neighbours left is, without any tolerance, the last of its connected component.
+/// Eliminating a node of a weighted graph joins its neighbours, w_ij += w_ip w_jp / Σ_i w_ip. All terms are positive,
+/// so that every entry keeps its relative accuracy, however weak the links are. A node without remaining neighbours is,
+/// without any tolerance, the last of its connected component.
 #[derive(Debug)]
 pub(crate) struct Elimination {
-    /// Column p, below the diagonal: weights of node p to later nodes at the time of its elimination.
+    /// Column p, below the diagonal: weights from node p to later nodes at the time of its elimination.
     weights: DMatrix<f64>,
-    /// Their sum; 0 for the last node of a component.
+    /// Sums of these weights; 0 for the last node of a component.
     degrees: Vec<f64>,
     /// For each node, the last node of its component.
     component: Vec<usize>,
 }
 
 impl Elimination {
-    /// Eliminates all nodes of a graph Laplacian (K, K), of which the strictly lower triangle is read.
+    /// Eliminates all nodes of a graph Laplacian (K, K), whose strictly lower triangle is read.
     pub(crate) fn new(laplacian: &DMatrix<f64>) -> Self {
         let count = laplacian.ncols();
         let mut weights = -laplacian;
@@ -53,7 +53,7 @@ impl Elimination {
         Elimination { weights, degrees, component }
     }
 
-    /// The solution x = L⁺r of least norm: on every component, r is taken relative to its mean, and x sums to 0.
+    /// The solution x = L⁺r of least norm: in every component, r is taken relative to its mean, and x sums to 0.
     pub(crate) fn solve(&self, right: &[f64]) -> Vec<f64> {
         let count = self.degrees.len();
         let mut x = right.to_vec();
@@ -76,7 +76,7 @@ impl Elimination {
         x
     }
 
-    /// Takes its mean off every component.
+    /// Subtracts the mean of every component.
     fn centre(&self, x: &mut [f64]) {
         let mut sums = vec![(0.0, 0.0); x.len()];
         for (&value, &component) in x.iter().zip(&self.component) {
@@ -113,7 +113,7 @@ mod tests {
             let laplacian = laplacian(count, &weights);
             let elimination = Elimination::new(&laplacian);
             let x = DVector::from_vec(elimination.solve(&right[..count]));
-            // Lx is r less its part along the null vectors, the ones of each component, and x has no such part.
+            // Lx equals r minus its part along the null vectors, the ones of each component, and x has no such part.
             let mut solvable = right[..count].to_vec();
             elimination.centre(&mut solvable);
             prop_assert!((&laplacian * &x - DVector::from_vec(solvable)).amax() < 1e-13);

@@ -7,10 +7,10 @@ use super::compensated::CompensatedSum;
 use super::responsibilities::{Block, Responsibilities};
 use lanes::{LANES, Lanes};
 
-/// a (16), (K), and E₀ of the objective among a group of trajectories, once each of them is raised by its offset.
-/// Trajectories without an offset are outside: their entries are 0, and their models take no part.
+/// a (16), (K), and E₀ of the objective among a group of trajectories, after shifting each by its offset. Trajectories
+/// without an offset are outside: their entries are 0, and their models are not used.
 ///
-/// Raised by b, all trajectories together have a + Hb: half the gradient of the objective at b.
+/// After a shift by b, all trajectories together have a + Hb: half the gradient of the objective at b.
 pub(crate) fn linear_term(responsibilities: &Responsibilities, offsets: &[Option<f64>]) -> (Vec<f64>, f64) {
     let blocks = responsibilities.blocks.par_iter().enumerate();
     let terms: Vec<_> = blocks.map(|(owner, block)| block_term(block, owner, offsets)).collect();
@@ -18,8 +18,8 @@ pub(crate) fn linear_term(responsibilities: &Responsibilities, offsets: &[Option
     let mut constant = CompensatedSum::default();
     for (block, term) in responsibilities.blocks.iter().zip(terms) {
         let Some(BlockTerm { reference, flows, misfit }) = term else { continue };
-        // What flows to a model flows from the reference: whatever rounding does to it, both agree, and a weak link
-        // is not drowned by the rounding of strong ones.
+        // The flow into a model equals the flow out of the reference. Both have the same rounding, so that the rounding
+        // of strong links does not hide a weak link.
         for (&model, flow) in block.models.iter().zip(flows).filter(|&(&model, _)| model != reference) {
             linear[model].add(flow);
             linear[reference].add(-flow);
@@ -31,9 +31,9 @@ pub(crate) fn linear_term(responsibilities: &Responsibilities, offsets: &[Option
 
 /// The contribution of one trajectory's samples.
 struct BlockTerm {
-    /// The trajectory itself, or the first member of the group if it is outside.
+    /// The trajectory itself, or the first member of the group if the trajectory is outside.
     reference: usize,
-    /// Σ_m Σ_j q_km q_jm (v_km − v_jm) for each model k of the block, 0 for those outside.
+    /// Σ_m Σ_j q_km q_jm (v_km − v_jm) for each model k of the block, 0 for models outside the group.
     flows: Vec<f64>,
     /// ½ Σ_m Σ_k Σ_j q_km q_jm (v_km − v_jm)².
     misfit: f64,

@@ -6,7 +6,8 @@ use super::linear_term::linear_term;
 use super::responsibilities::{Block, Responsibilities};
 use lanes::LANES;
 
-/// H is summed in this many parts, each in the order of its samples, so that no number of threads changes a bit.
+/// H is summed in this many parts, each in the order of its samples, so that the bits do not depend on the number of
+/// threads.
 const PARTS: usize = 8;
 
 /// The alignment objective (13), (14) of the offsets b, (K),
@@ -14,10 +15,10 @@ const PARTS: usize = 8;
 /// in the paper's scaling: its gradient is 2(a + Hb), its Hessian 2H.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AlignmentObjective {
-    /// H = diag_k(Σ_m q_km) − Σ_m q_m q_mᵀ (15), (K, K): the Laplacian of a graph whose weights measure
-    /// how much two trajectories share responsibility for samples.
+    /// H = diag_k(Σ_m q_km) − Σ_m q_m q_mᵀ (15), (K, K): the Laplacian of a graph whose weights measure how much two
+    /// trajectories share responsibility for samples.
     pub laplacian: DMatrix<f64>,
-    /// a_k = Σ_m q_km (f_km − Σ_j q_jm f_jm) (16), (K), in units of the potential; not finite where differences of
+    /// a_k = Σ_m q_km (f_km − Σ_j q_jm f_jm) (16), (K), in units of the potential; not finite if differences of
     /// potentials overflow.
     pub linear: DVector<f64>,
     /// E₀ = E(0), in units of the potential squared; infinite if it overflows.
@@ -29,7 +30,7 @@ impl AlignmentObjective {
         let laplacian = laplacian(responsibilities);
         let unaligned = vec![Some(0.0); responsibilities.n_trajectories()];
         let (linear, constant) = linear_term(responsibilities, &unaligned);
-        // What overflows on its way gives ∞ − ∞.
+        // An overflow on the way gives ∞ − ∞.
         let constant = if constant.is_nan() { f64::INFINITY } else { constant };
         AlignmentObjective { laplacian, linear: linear.into(), constant }
     }
@@ -46,14 +47,14 @@ impl AlignmentObjective {
 
     /// The minimiser b = −H⁺a (17), (K), whose sum over each connected component of the graph is 0.
     ///
-    /// Its rounding error is about 1e-16 / λ₂. `laplacian` must be one: square, symmetric, rows summing to 0, nothing
-    /// positive off the diagonal.
+    /// The rounding error is about 1e-16 / λ₂. `laplacian` must be a graph Laplacian: square, symmetric, with rows that
+    /// sum to 0 and no positive entry off the diagonal.
     pub fn minimiser(&self) -> DVector<f64> {
         Elimination::new(&self.laplacian).solve((-&self.linear).as_slice()).into()
     }
 }
 
-/// H (15): the off-diagonal −Σ_m q_km q_jm as they are, the diagonal from them, since Σ_j q_jm = 1.
+/// H (15): the off-diagonal entries −Σ_m q_km q_jm, and the diagonal from these, because Σ_j q_jm = 1.
 fn laplacian(responsibilities: &Responsibilities) -> DMatrix<f64> {
     let count = responsibilities.n_trajectories();
     let parts: Vec<_> =
@@ -70,7 +71,7 @@ fn laplacian(responsibilities: &Responsibilities) -> DMatrix<f64> {
     laplacian
 }
 
-/// Σ_m q_m q_mᵀ (K, K) over the samples of some blocks; the lower triangle counts.
+/// Σ_m q_m q_mᵀ (K, K) over the samples of some blocks; only the lower triangle is valid.
 fn mutual(blocks: &[Block], count: usize) -> DMatrix<f64> {
     let mut weights = DMatrix::zeros(count, count);
     for block in blocks {
@@ -84,7 +85,7 @@ fn mutual(blocks: &[Block], count: usize) -> DMatrix<f64> {
     weights
 }
 
-/// QᵀQ over the samples of one block, for its models only; the lower triangle counts.
+/// QᵀQ over the samples of one block, for its models only; only the lower triangle is valid.
 fn gram(block: &Block) -> DMatrix<f64> {
     linalg::gram(block.shares.as_flattened(), LANES * block.groups)
 }

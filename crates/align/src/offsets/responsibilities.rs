@@ -7,31 +7,31 @@ use super::weights::to_weights;
 use crate::search::nearest::{Nearest, NearestSamples};
 use lanes::{LANES, Lanes, groups_of};
 
-/// The responsibilities q_km (12) of the local models for all samples, and what those models say there.
+/// The responsibilities q_km (12) of the local models for all samples, and these models' potentials there.
 ///
-/// One block holds the samples of one trajectory. Most models are far from it and have no part in it.
+/// One block holds the samples of one trajectory. Most models are far from it and not contained in it.
 #[derive(Debug)]
 pub(crate) struct Responsibilities {
     pub(crate) blocks: Vec<Block>,
 }
 
-/// The samples of one trajectory, as all local models see them.
+/// The samples of one trajectory, with the local models near them.
 #[derive(Debug)]
 pub(crate) struct Block {
-    /// The models with a responsibility above the floor at some sample, ascending.
+    /// The models whose responsibility exceeds the floor at some sample, ascending.
     pub(crate) models: Vec<usize>,
-    /// For each model in turn q_km at every sample, filled up with 0.
+    /// For each model in turn, q_km at every sample, padded with 0.
     pub(crate) shares: Vec<Lanes>,
-    /// For each model in turn f_km − f_om, where o is the trajectory itself: φ̂ of the nearest samples (10).
+    /// For each model in turn, f_km − f_om, where o is the trajectory itself: φ̂ of the nearest samples (10).
     pub(crate) differences: Vec<Lanes>,
-    /// Groups of samples.
+    /// Number of groups of samples.
     pub(crate) groups: usize,
 }
 
-/// The squared distance beyond which weights are below `floor` and dropped: at a sample of the data the own trajectory
-/// has weight 1, the largest there can be.
+/// The squared distance beyond which weights are below `floor` and are dropped. At a sample of the data, its own
+/// trajectory has weight 1, the maximum.
 pub(crate) fn squared_radius(sigma_squared: f64, floor: f64) -> f64 {
-    // Not 2σ² first, which may overflow.
+    // 2σ² might overflow if computed first.
     sigma_squared * (-2.0 * floor.ln())
 }
 
@@ -73,7 +73,7 @@ impl Block {
         Block { models: near.into_iter().map(|(model, _)| model).collect(), shares, differences, groups }
     }
 
-    /// (model, q, f − f of the own trajectory) for each model of the block.
+    /// (model, q, f minus f of the trajectory itself) for each model of the block.
     pub(crate) fn models(&self) -> impl Iterator<Item = (usize, &[Lanes], &[Lanes])> {
         let shares = self.shares.chunks_exact(self.groups);
         let differences = self.differences.chunks_exact(self.groups);
@@ -107,7 +107,7 @@ impl WithSimd for Normalise<'_> {
                 }
             }
         }
-        // Padding samples have no weight, and 0 / 1 keeps it so.
+        // Padding samples have no weight, and 0 / 1 keeps them at 0.
         for total in total.as_flattened_mut() {
             *total = if *total > 0.0 { *total } else { 1.0 };
         }

@@ -1,18 +1,18 @@
 use nalgebra::DMatrix;
 
-/// Lloyd's iteration ends by itself, since the cost falls each time; this only guards against rounding.
+/// Lloyd's iteration terminates because the cost decreases each time; this limit only guards against rounding.
 const MOST_ROUNDS: usize = 100;
 
-/// Distances that differ by less than this share of the distance between the starts are equal.
+/// Distances that differ by less than this share of the distance between the starts count as equal.
 ///
-/// Parts without links have equal rows up to rounding, and parts of equal size are equally far from each other: without
-/// a margin, rounding would cut right through a third one that lies in the middle between two starts.
+/// Parts without links have equal rows up to rounding, and parts of equal size are equidistant. Without a margin,
+/// rounding would divide a third part that lies in the middle between two starts.
 const MARGIN: f64 = 1e-6;
 
-/// Splits rows into two clusters: true for the rows of the second. Each row counts as often as its mass says.
+/// Splits rows into two clusters: true for the rows of the second. Each row is weighted by its mass.
 ///
-/// Deterministic: the first cluster starts at the row farthest from the mean, the second at the row farthest from
-/// that; ties go to the lowest index and to the first cluster.
+/// Deterministic: the first cluster starts at the row farthest from the mean, the second at the row farthest from that
+/// one; ties go to the lowest index and to the first cluster.
 pub(crate) fn two_means(rows: &DMatrix<f64>, masses: &[f64]) -> Vec<bool> {
     let first = farthest_from(rows, &mean(rows, masses, |_| true));
     let second = farthest_from(rows, &row(rows, first));
@@ -59,13 +59,13 @@ mod tests {
     #[test]
     fn finds_two_clusters_whatever_the_order() {
         let rows = DMatrix::from_row_slice(5, 2, &[0.0, 0.1, 5.0, 5.0, 0.1, 0.0, 5.1, 5.0, 0.0, 0.0]);
-        // The row farthest from the mean is 3, so that the first cluster is about it.
+        // The row farthest from the mean is 3, so the first cluster forms around it.
         assert_eq!(two_means(&rows, &[1.0; 5]), [true, false, true, false, true]);
     }
 
     #[test]
     fn rounding_does_not_cut_what_lies_in_the_middle() {
-        // The third point is seen four times, a hair to this side or that.
+        // The third point occurs four times, shifted by tiny amounts.
         let hair = 1e-15;
         let x = [-1.0, 1.0, hair, -hair, 0.0, 2.0 * hair];
         let rows = DMatrix::from_fn(6, 2, |i, column| if column == 0 { x[i] } else { f64::from(i > 1) });

@@ -1,4 +1,4 @@
-//! Squared distances become weights.
+//! Converts squared distances to weights.
 
 #![allow(clippy::inline_always, reason = "vector instructions reach only what is inlined")]
 
@@ -22,7 +22,7 @@ impl WithSimd for ToWeights<'_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, _simd: S) {
         for value in self.squared_distances {
-            // Halved last: 2σ² may overflow.
+            // Halved last, because 2σ² may overflow.
             let weight = exp_in_bulk(-0.5 * (*value / self.sigma_squared));
             *value = if *value <= self.squared_radius { weight } else { 0.0 };
         }

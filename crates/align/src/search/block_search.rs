@@ -1,5 +1,5 @@
 //! The innermost loop of the alignment: squared distances between the samples of two trajectories, of which only the
-//! smallest of every row and every column is kept. Segments whose boxes are beyond the search radius are passed over.
+//! minimum of each row and each column is kept. Segments whose boxes are beyond the search radius are skipped.
 
 #![allow(clippy::inline_always, reason = "vector instructions reach only what is inlined")]
 
@@ -13,16 +13,17 @@ use super::distances;
 use super::minima::Minima;
 use super::tiles::{ROWS, Tiles};
 
-/// Compares one trajectory, sample by sample, with others.
+/// Compares one trajectory with others, sample by sample.
 #[derive(Debug)]
 pub(crate) struct BlockSearch<'a> {
     one: &'a Tiles,
     squared_radius: f64,
-    /// The segments of the other trajectory within the search radius of the segment at hand, in runs of neighbours.
+    /// The segments of the other trajectory within the search radius of the present segment, as ranges of adjacent
+    /// ones.
     within_radius: Vec<Range<usize>>,
-    /// For the samples of this trajectory, the nearest of the other.
+    /// For each sample of this trajectory, the nearest of the other.
     pub(crate) of_rows: Minima,
-    /// For the samples of the other trajectory, the nearest of this.
+    /// For each sample of the other trajectory, the nearest of this one.
     pub(crate) of_columns: Minima,
 }
 
@@ -33,16 +34,16 @@ impl<'a> BlockSearch<'a> {
         BlockSearch { one, squared_radius, within_radius: Vec::new(), of_rows, of_columns }
     }
 
-    /// Finds what is nearest for the samples of both trajectories, and the smallest squared distance of all.
+    /// Finds the nearest samples for both trajectories, and the smallest squared distance of all.
     ///
-    /// A sample whose nearest is beyond the search radius gets some squared distance beyond it, finite or not.
+    /// A sample whose nearest is beyond the search radius gets an arbitrary squared distance beyond it, finite or not.
     pub(crate) fn run(&mut self, other: &Tiles) -> f64 {
         self.of_rows.reset(self.one.n_samples);
         self.of_columns.reset(other.n_samples);
         self.one.arch.dispatch(Block { search: self, other })
     }
 
-    /// Finds the segments of the other trajectory within the search radius of one of this, in runs of neighbours.
+    /// Finds the segments of the other trajectory within the search radius of one of this, as ranges of adjacent ones.
     fn find_within_radius(&mut self, segment: usize, other: &Tiles) {
         self.within_radius.clear();
         for b in 0..other.boxes.len() {
@@ -56,7 +57,7 @@ impl<'a> BlockSearch<'a> {
     }
 }
 
-/// One pair of trajectories: rows are samples of the one, vector lanes samples of the other.
+/// One pair of trajectories: rows are samples of this one, vector lanes samples of the other.
 struct Block<'s, 'a> {
     search: &'s mut BlockSearch<'a>,
     other: &'s Tiles,
@@ -68,7 +69,7 @@ impl WithSimd for Block<'_, '_> {
     /// The smallest squared distance of the block.
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> f64 {
-        // Few dimensions stay in registers; many are a loop whose start and end no longer matter.
+        // Few dimensions stay in registers; for many, the loop overhead no longer matters.
         match self.other.dim {
             1 => self.run(simd, |rows, tile| distances::fixed::<S, 1>(simd, rows, tile)),
             2 => self.run(simd, |rows, tile| distances::fixed::<S, 2>(simd, rows, tile)),
@@ -112,7 +113,7 @@ impl Block<'_, '_> {
                     let tiles = tiles[first * dim..last * dim].chunks_exact(dim);
                     for (tile, (column_distance, column_sample)) in tiles.zip(columns) {
                         let distance = squared_distances(rows, tile);
-                        // Held in registers: a masked store that is read again at once would wait for memory.
+                        // Kept in registers, because reading a masked store back immediately would wait for memory.
                         let (mut column_nearest, mut column_row) = (*column_distance, *column_sample);
                         for r in 0..ROWS {
                             let nearer = simd.less_than_f64s(distance[r], nearest[r]);
@@ -148,8 +149,8 @@ mod tests {
 
     use super::*;
 
-    /// Few different coordinates, so that many samples are equally near; or arbitrary ones; or steps from one to the
-    /// next, so that most segments are apart.
+    /// A few distinct coordinates, so that many samples are equally near; or arbitrary ones; or steps from one sample
+    /// to the next, so that most segments are apart.
     fn states(dim: usize) -> impl Strategy<Value = DMatrix<f64>> {
         let coordinate = prop_oneof![(-2..3).prop_map(f64::from), -1.0..1.0];
         (1usize..100, any::<bool>()).prop_flat_map(move |(n, walks)| {
@@ -165,7 +166,7 @@ mod tests {
         (1usize..9).prop_flat_map(|dim| (states(dim), states(dim)))
     }
 
-    /// Every kind of vector that this machine has.
+    /// Every kind of vector instruction of this machine.
     fn kinds() -> Vec<Arch> {
         let kinds = vec![Arch::Scalar, Arch::new()];
         #[cfg(target_arch = "x86_64")]
@@ -200,7 +201,7 @@ mod tests {
                 let [tiles, others] = [&one, &other].map(|states| Tiles::new(states, arch));
                 let mut search = BlockSearch::new(&tiles, f64::INFINITY);
                 let smallest = search.run(&others);
-                // All bits, for the sums have one order on every machine.
+                // All bits agree, because sums have the same order on every machine.
                 let of_one = nearest(&other, &one);
                 prop_assert_eq!(&found(&search.of_rows, one.ncols()), &of_one);
                 prop_assert_eq!(found(&search.of_columns, other.ncols()), nearest(&one, &other));

@@ -1,20 +1,20 @@
 use nalgebra::DMatrix;
 
-/// Samples of one segment: few, so that boxes are tight, and whole tiles of the widest vector there is.
+/// Number of samples per segment: few, so that boxes are tight, and a multiple of the widest vector.
 pub(crate) const SEGMENT: usize = 24;
 
 /// The bounding boxes of one trajectory and of its segments, `SEGMENT` consecutive samples each.
 #[derive(Debug)]
 pub(crate) struct Boxes {
     dim: usize,
-    /// For each dimension, the lowest and the highest coordinate.
+    /// The lowest and the highest coordinate in each dimension.
     whole: Vec<[f64; 2]>,
     /// For each segment and each dimension in turn.
     segments: Vec<[f64; 2]>,
 }
 
 impl Boxes {
-    /// Of states (n, N), one column a sample.
+    /// From states (n, N), one column per sample.
     pub(crate) fn new(states: &DMatrix<f64>) -> Self {
         let dim = states.nrows();
         let nothing = vec![[f64::INFINITY, f64::NEG_INFINITY]; dim];
@@ -34,7 +34,8 @@ impl Boxes {
         self.segments.len() / self.dim
     }
 
-    /// The squared distance between the boxes of two segments: no two samples in them are nearer, not even by rounding.
+    /// The squared distance between the boxes of two segments; no two of their samples are nearer, not even by
+    /// rounding.
     pub(crate) fn squared_gap(&self, segment: usize, other: &Boxes, of_other: usize) -> f64 {
         squared_gap(
             &self.segments[segment * self.dim..][..self.dim],
@@ -47,7 +48,7 @@ impl Boxes {
         squared_gap(&self.whole, &other.whole)
     }
 
-    /// Whether the boxes of any two segments are as near as that.
+    /// Whether the boxes of any two segments are within this squared distance.
     pub(crate) fn is_within(&self, squared_radius: f64, other: &Boxes) -> bool {
         let mut pairs = (0..self.len()).flat_map(|a| (0..other.len()).map(move |b| (a, b)));
         self.squared_gap_of_all(other) <= squared_radius
@@ -55,7 +56,7 @@ impl Boxes {
     }
 }
 
-/// Makes a box so large that it holds two corners.
+/// Extends a box to include two corners.
 pub(super) fn extend(bounds: &mut [[f64; 2]], lowest: &[f64], highest: &[f64]) {
     for ([low, high], (&below, &above)) in bounds.iter_mut().zip(lowest.iter().zip(highest)) {
         *low = if below < *low { below } else { *low };
@@ -63,8 +64,8 @@ pub(super) fn extend(bounds: &mut [[f64; 2]], lowest: &[f64], highest: &[f64]) {
     }
 }
 
-/// Rounding is monotone: differences, squares and sums are formed as those of samples are, in the same order, and none
-/// of them is larger.
+/// Rounding is monotone: differences, squares and sums are computed in the same order as for samples, and none of them
+/// is larger.
 pub(super) fn squared_gap(these: &[[f64; 2]], those: &[[f64; 2]]) -> f64 {
     let gaps = these.iter().zip(those).map(|(&[low, high], &[other_low, other_high])| {
         let gap = (low - other_high).max(other_low - high).max(0.0);
@@ -91,7 +92,7 @@ mod tests {
 
     #[test]
     fn far_segments_are_not_within_the_radius_of_each_other() {
-        // Two corners: their boxes as a whole meet, those of their segments do not.
+        // Two corners: their overall boxes meet, but those of their segments do not.
         let corner =
             |far: f64| DMatrix::from_fn(2, 2 * SEGMENT, move |c, i| if (c == 0) == (i < SEGMENT) { far } else { 0.0 });
         let [one, other] = [1.0, 3.0].map(|far| Boxes::new(&corner(far)));

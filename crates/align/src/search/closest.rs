@@ -6,10 +6,10 @@ use super::boxes::SEGMENT;
 use super::distances;
 use super::tiles::{ROWS, Tiles};
 
-/// The smallest squared distance between samples of two trajectories, or `bound` if none is below it.
+/// The smallest squared distance between samples of two trajectories, or `bound` if none is smaller.
 ///
-/// The pair of segments with the nearest boxes is looked at first; then only pairs whose boxes are nearer than the
-/// nearest samples so far.
+/// Examines the pair of segments with the nearest boxes first, then only pairs whose boxes are nearer than the nearest
+/// samples found so far.
 pub(crate) fn closest(one: &Tiles, other: &Tiles, bound: f64) -> f64 {
     let pairs = || (0..one.boxes.len()).flat_map(|a| (0..other.boxes.len()).map(move |b| (a, b)));
     let gap = |(a, b)| one.boxes.squared_gap(a, &other.boxes, b);
@@ -29,7 +29,7 @@ pub(crate) fn closest(one: &Tiles, other: &Tiles, bound: f64) -> f64 {
     pairs().fold(found, |found, pair| if pair != first && gap(pair) < found { among(pair, found) } else { found })
 }
 
-/// A segment of each of two trajectories.
+/// One segment from each of two trajectories.
 struct Segments<'a> {
     one: &'a Tiles,
     a: usize,

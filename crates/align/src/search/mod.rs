@@ -1,4 +1,4 @@
-//! The search for nearest samples: distances between trajectories, then whatever is within a bandwidth's search radius.
+//! The search for nearest samples: distances between trajectories, then all samples within a bandwidth's search radius.
 
 mod block_search;
 mod boxes;

@@ -6,28 +6,30 @@ use super::block_search::BlockSearch;
 use super::minima::Minima;
 use super::tiles::Tiles;
 
-/// For every sample of every trajectory, its nearest sample in each trajectory within a radius: behind (10) and
-/// (11).
+/// For each sample of each trajectory, its nearest sample in each trajectory within a radius, as used in (10) and (11).
 ///
-/// Each pair of trajectories is one block of squared distances, looked at once: it tells the samples of both what is
-/// nearest in the other. Distances are sums of squared differences, exact to rounding even for distant clouds.
+/// Each pair of trajectories is one block of squared distances, which is computed once and gives the nearest samples
+/// for both. Distances are sums of squared differences, exact to rounding even for distant clouds.
 #[derive(Debug)]
 pub(crate) struct NearestSamples {
     squared_radius: f64,
-    /// At i, those of trajectories i, i + 1, … whose boxes are within the radius of those of trajectory i, ascending.
+    /// At i, those of the trajectories i, i + 1, … whose boxes are within the radius of those of trajectory i,
+    /// ascending.
     neighbours: Vec<Vec<usize>>,
-    /// At i, for the samples of trajectory i: the nearest of its neighbours, one after the other.
+    /// At i, for the samples of trajectory i: the nearest samples of its neighbours, one neighbour after the other.
     toward_later: Vec<NearestList>,
-    /// At i, for the samples of its neighbours, one after the other: the nearest of trajectory i.
+    /// At i, for the samples of its neighbours, one neighbour after the other: the nearest samples of trajectory i.
     toward_earlier: Vec<NearestList>,
 }
 
-/// For the samples of one trajectory, the nearest ones of another.
+/// For the samples of one trajectory, the nearest samples of another.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Nearest<'a> {
-    /// Squared distances, filled up with infinity; of samples whose nearest is beyond the radius some number beyond it.
+    /// Squared distances, padded with infinity. If the nearest sample is beyond the radius, an arbitrary number beyond
+    /// it.
     pub(crate) squared_distances: &'a [Lanes],
-    /// Indices, filled up with 0; the lowest of those equally near. Of samples whose nearest is beyond the radius any.
+    /// Indices, padded with 0; the lowest among equally near ones. Arbitrary if the nearest sample is beyond the
+    /// radius.
     pub(crate) samples: &'a [[u32; LANES]],
     /// The smallest squared distance of all.
     smallest: f64,
@@ -43,7 +45,7 @@ impl NearestSamples {
             let mut of_rows = NearestList::with_capacity(own * neighbours[i].len());
             let mut of_columns = NearestList::with_capacity(groups.sum());
             for &j in &neighbours[i] {
-                // Boxes within the search radius may have no samples that are.
+                // Boxes within the search radius may not contain samples within it.
                 let smallest = search.run(&trajectories[j]);
                 of_rows.push(&search.of_rows, smallest, squared_radius);
                 of_columns.push(&search.of_columns, smallest, squared_radius);
@@ -54,12 +56,12 @@ impl NearestSamples {
         NearestSamples { squared_radius, neighbours, toward_later, toward_earlier }
     }
 
-    /// The squared distance beyond which nothing is searched.
+    /// The squared search radius.
     pub(crate) fn squared_radius(&self) -> f64 {
         self.squared_radius
     }
 
-    /// The same, of which only what is within this smaller radius counts.
+    /// Restricts the result to this smaller radius.
     pub(crate) fn within(self, squared_radius: f64) -> Self {
         NearestSamples { squared_radius, ..self }
     }
@@ -75,7 +77,7 @@ impl NearestSamples {
         self.neighbours.len()
     }
 
-    /// The nearest samples in trajectory `model` to each sample of `owner`; none if all are beyond the radius.
+    /// The nearest samples in trajectory `model` to each sample of `owner`; `None` if all are beyond the radius.
     pub(crate) fn of(&self, owner: usize, model: usize) -> Option<Nearest<'_>> {
         let (first, second) = (owner.min(model), owner.max(model));
         let at = self.neighbours[first].binary_search(&second).ok()?;
@@ -84,7 +86,7 @@ impl NearestSamples {
     }
 }
 
-/// The minima of several blocks, one after the other; blocks without any are empty.
+/// The minima of several blocks, one after the other; blocks without minima are empty.
 #[derive(Debug)]
 struct NearestList {
     squared_distances: Vec<Lanes>,
@@ -120,7 +122,7 @@ impl NearestList {
     }
 }
 
-/// A whole number below 2^32 from its f64: added to 2^52 it stands in the low bits, and that vectorises on any machine.
+/// An integer below 2^32 from its f64: adding 2^52 puts it in the low bits, which vectorises on any machine.
 fn whole(number: f64) -> u32 {
     (number + 4503599627370496.0).to_bits() as u32
 }

@@ -3,11 +3,12 @@ use pulp::Arch;
 
 use super::boxes::{extend, squared_gap};
 
-/// Samples of one leaf: two vectors of the widest machine, so that a leaf is small and loops over it are short.
+/// Number of samples per leaf: two vectors of the widest machine, so that a leaf is small and loops over it are short.
 pub(crate) const LEAF: usize = 16;
-/// So few samples are copied to one place before they are divided further: they then fit in a cache.
+/// A node of at most this number of samples is copied to contiguous memory before further division, so that it fits in
+/// the cache.
 const LOCAL: usize = 4096;
-/// So many samples, evenly spaced, show in which dimension a node is widest.
+/// Number of evenly spaced samples that determine the dimension in which a node is widest.
 const PROBES: usize = 32;
 
 /// One sample of one trajectory.
@@ -17,15 +18,15 @@ pub(crate) struct Place {
     pub(crate) sample: u32,
 }
 
-/// A balanced k-d tree over all samples of all trajectories, for searches that must not look at all pairs.
+/// A balanced k-d tree over all samples of all trajectories, for searches that must not examine all pairs.
 ///
-/// All leaves but the last are full. Nodes are in preorder: the children of a node over L leaves are its successor,
-/// over ⌈L/2⌉ of them, and the node after that one's 2⌈L/2⌉ − 1. Built in O(nM log M) for M samples in n dimensions.
+/// All leaves except the last are full. Nodes are in preorder: the children of a node with L leaves are its successor,
+/// with ⌈L/2⌉ of them, and the node 2⌈L/2⌉ − 1 after that. Built in O(nM log M) for M samples in n dimensions.
 #[derive(Debug)]
 pub(crate) struct SampleTree {
     pub(super) arch: Arch,
     pub(super) dim: usize,
-    /// For each leaf and each dimension the coordinates of its samples; the last leaf is filled up with infinity.
+    /// For each leaf and each dimension, the coordinates of its samples; the last leaf is padded with infinity.
     pub(super) states: Vec<[f64; LEAF]>,
     /// In the order of the leaves.
     pub(crate) places: Vec<Place>,
@@ -34,7 +35,7 @@ pub(crate) struct SampleTree {
 }
 
 impl SampleTree {
-    /// Of all samples; there must be fewer than 2^32.
+    /// The tree of all samples; there must be fewer than 2^32.
     pub(crate) fn new(demonstrations: &Demonstrations) -> Self {
         let trajectories = demonstrations.trajectories();
         let (dim, count) = (demonstrations.dim(), demonstrations.n_samples());
@@ -59,7 +60,7 @@ impl SampleTree {
         SampleTree { arch: Arch::new(), dim, states, places, boxes }
     }
 
-    /// Bytes that it takes.
+    /// Size in bytes.
     pub(crate) fn bytes(&self) -> u64 {
         (size_of_val(&*self.states) + size_of_val(&*self.places) + size_of_val(&*self.boxes)) as u64
     }
@@ -76,7 +77,7 @@ impl SampleTree {
 
     /// Visits the leaves whose boxes are within a squared distance of a box, the nearer of two nodes first.
     ///
-    /// `squared_radius` is asked anew before each visit: a search may shrink it by what it has found.
+    /// `squared_radius` is evaluated before each visit, so that results of the search may shrink it.
     pub(super) fn visit(&self, query: &[[f64; 2]], squared_radius: &impl Fn() -> f64, visitor: &mut impl FnMut(usize)) {
         let root = Node { at: 0, first: 0, leaves: self.n_leaves() };
         if self.gap(query, root.at) <= squared_radius() {
@@ -121,7 +122,7 @@ impl SampleTree {
     }
 }
 
-/// A node by its number in preorder, its first leaf and the number of its leaves.
+/// A node: its number in preorder, its first leaf and the number of its leaves.
 #[derive(Debug, Clone, Copy)]
 struct Node {
     at: usize,
@@ -139,13 +140,13 @@ impl Node {
     }
 }
 
-/// What belongs to one node and all below it.
+/// The data of a node and all nodes below it.
 struct Parts<'a> {
     boxes: &'a mut [[f64; 2]],
     states: &'a mut [[f64; LEAF]],
 }
 
-/// Brings the samples of a node in the order of its leaves. Coordinates are those of the samples named in `order`.
+/// Reorders the samples of a node into the order of its leaves. `coordinates` are those of the samples in `order`.
 fn divide(coordinates: &[f64], dim: usize, order: &mut [u32], parts: &mut Parts<'_>) {
     let state = |sample: u32| &coordinates[sample as usize * dim..][..dim];
     let (own, below) = parts.boxes.split_at_mut(dim);
@@ -181,7 +182,7 @@ fn divide(coordinates: &[f64], dim: usize, order: &mut [u32], parts: &mut Parts<
     }
 }
 
-/// The dimension in which some of the samples lie farthest apart.
+/// The dimension in which some of the samples are farthest apart.
 fn widest<'a>(dim: usize, order: &[u32], state: impl Fn(u32) -> &'a [f64]) -> usize {
     let mut bounds = vec![[f64::INFINITY, f64::NEG_INFINITY]; dim];
     for &sample in order.iter().step_by(order.len().div_ceil(PROBES)) {

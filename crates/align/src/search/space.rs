@@ -9,14 +9,14 @@ use super::nearest::NearestSamples;
 use super::tiles::Tiles;
 use crate::AlignError;
 
-/// Bytes for each sample and each trajectory that may be within the radius: squared distance and index of the nearest,
-/// responsibility and rise.
+/// Bytes for each sample and each trajectory that may be within the radius: squared distance and index of the nearest
+/// sample, responsibility and potential difference.
 const PER_SAMPLE_AND_TRAJECTORY: u64 = 8 + 4 + 8 + 8;
 
 /// Bytes for each pair of trajectories: H in parts, its eigenvectors and its elimination.
 const PER_PAIR: u64 = 8 * 14;
 
-/// All trajectories, laid out for the search for nearest samples.
+/// All trajectories, prepared for the search for nearest samples.
 #[derive(Debug)]
 pub(crate) struct SearchSpace {
     trajectories: Vec<Tiles>,
@@ -50,7 +50,7 @@ impl SearchSpace {
         (0..self.n_trajectories()).into_par_iter().map(|k| self.distance_to_nearest(k)).collect()
     }
 
-    /// The trajectory with the nearest box is looked at first; it bounds what others are worth a look.
+    /// Examines the trajectory with the nearest box first; its distance limits which others need a search.
     fn distance_to_nearest(&self, k: usize) -> f64 {
         let own = &self.trajectories[k];
         let others = || (0..self.n_trajectories()).filter(move |&j| j != k);
@@ -61,10 +61,10 @@ impl SearchSpace {
         others().filter(|&j| j != first).fold(found, nearer)
     }
 
-    /// The nearest samples of all pairs of trajectories, where their squared distance is at most `squared_radius`.
+    /// The nearest samples for all pairs of trajectories, up to a squared distance of `squared_radius`.
     ///
     /// # Errors
-    /// [`AlignError::Memory`] if they and what is made of them could take more bytes than that.
+    /// [`AlignError::Memory`] if they and the data derived from them could take more than `memory_limit` bytes.
     pub(crate) fn nearest(&self, squared_radius: f64, memory_limit: u64) -> Result<NearestSamples, AlignError> {
         let neighbours = self.neighbours(squared_radius);
         let needed = self.bytes(&neighbours);
@@ -74,7 +74,7 @@ impl SearchSpace {
         Ok(NearestSamples::search(&self.trajectories, neighbours, squared_radius))
     }
 
-    /// How much memory the alignment takes at most, if these are the neighbours.
+    /// Upper bound on the memory of the alignment with these neighbours.
     fn bytes(&self, neighbours: &[Vec<usize>]) -> u64 {
         let samples = |k: usize| self.trajectories[k].n_samples.next_multiple_of(LANES) as u64;
         let pairs = neighbours.iter().enumerate().flat_map(|(i, later)| later.iter().map(move |&j| (i, j)));

@@ -2,7 +2,7 @@ use motion::Demonstrations;
 
 use crate::AlignError;
 
-/// Squared distances are finite if the diagonal of the data's bounding box is.
+/// Checks that squared distances are finite, which holds if the diagonal of the data's bounding box is.
 ///
 /// # Errors
 /// [`AlignError::SpanOverflow`] if it is not.

@@ -5,27 +5,27 @@ use pulp::{Arch, Simd, WithSimd};
 
 use super::boxes::Boxes;
 
-/// Rows of one trajectory that share one load of the other's coordinates.
+/// Number of rows of one trajectory that share one load of the other's coordinates.
 pub(crate) const ROWS: usize = 4;
 
-/// The states of one trajectory, laid out for comparison with those of others, by the vectors of one kind of machine.
+/// The states of one trajectory, laid out for comparison with those of others by the vectors of one kind of machine.
 #[derive(Debug)]
 pub(crate) struct Tiles {
     pub(crate) arch: Arch,
     pub(crate) dim: usize,
     pub(crate) n_samples: usize,
-    /// As columns: tiles of as many samples as a vector has lanes; a tile holds one vector for each dimension. The last
-    /// is padded with infinity, which is never nearest.
+    /// As columns: tiles with as many samples as a vector has lanes; a tile holds one vector per dimension. The last
+    /// tile is padded with infinity, which is never nearest.
     pub(crate) columns: Vec<f64>,
-    /// As rows: groups of `ROWS`; for each group and each dimension one coordinate a row. The last group is filled up
-    /// with its last state: a repeated row is never strictly nearer.
+    /// As rows: groups of `ROWS`; for each group and each dimension, one coordinate per row. The last group is padded
+    /// with its last state, because a repeated row is never strictly nearer.
     pub(crate) rows: Vec<[f64; ROWS]>,
     /// The boxes of the segments.
     pub(crate) boxes: Boxes,
 }
 
 impl Tiles {
-    /// Of states (n, N), one column a sample.
+    /// From states (n, N), one column per sample.
     pub(crate) fn new(states: &DMatrix<f64>, arch: Arch) -> Self {
         let (dim, n_samples) = states.shape();
         let (columns, rows, boxes) = (columns(states, arch.dispatch(LaneCount)), rows(states), Boxes::new(states));

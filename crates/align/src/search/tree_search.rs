@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 use super::sample_tree::{LEAF, Place, SampleTree};
 
-/// The nearest sample of one trajectory to some sample of another.
+/// The nearest sample of one trajectory to a sample of another.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Neighbour {
     pub(crate) place: Place,
@@ -17,13 +17,13 @@ pub(crate) struct Neighbour {
 }
 
 impl SampleTree {
-    /// d_k^min = min_{j≠k} d_kj (19), (K), but for the `excluded` pairs k < j, ascending: infinite where there is none.
+    /// d_k^min = min_{j≠k} d_kj (19), (K), without the `excluded` pairs k < j, ascending; infinite if there is none.
     ///
     /// Minima do not depend on the order in which threads find them.
     pub(crate) fn distances_to_nearest(&self, n_trajectories: usize, excluded: &[(usize, usize)]) -> Vec<f64> {
         let nearest: Vec<AtomicU64> = (0..n_trajectories).map(|_| AtomicU64::new(f64::INFINITY.to_bits())).collect();
         let nearest = Nearest(nearest);
-        // What leaves hold themselves bounds what is worth a look elsewhere.
+        // Distances within leaves bound the search in other leaves.
         let leaves = || (0..self.n_leaves()).into_par_iter();
         leaves().for_each(|leaf| self.compare(leaf, leaf, excluded, &nearest));
         leaves().for_each(|leaf| {
@@ -58,7 +58,7 @@ impl SampleTree {
         pairs
     }
 
-    /// How many other trajectories are within a squared distance of a sample: the mean over some samples of `leaves`
+    /// Number of other trajectories within a squared distance of a sample: the mean over some samples of `leaves`
     /// evenly spaced leaves.
     pub(crate) fn mean_neighbours(&self, leaves: usize, squared_radius: f64) -> f64 {
         let of_leaf = |leaf: usize| {
@@ -74,8 +74,8 @@ impl SampleTree {
         found as f64 / samples as f64
     }
 
-    /// For each sample of a leaf in turn, the nearest sample of every other trajectory that has one at a squared
-    /// distance of at most `squared_radius`; trajectories ascend, and of equally near samples it is the first.
+    /// For each sample of a leaf in turn, the nearest sample of every other trajectory that has one within the squared
+    /// distance `squared_radius`. Trajectories ascend; among equally near samples, the first is taken.
     pub(crate) fn neighbours(
         &self,
         leaf: usize,
@@ -99,7 +99,7 @@ impl SampleTree {
     }
 }
 
-/// Squared distances as bits: those of numbers that are not negative have their order.
+/// Squared distances as bits, which have the order of the numbers if these are not negative.
 struct Nearest(Vec<AtomicU64>);
 
 impl Nearest {
@@ -114,7 +114,7 @@ impl Nearest {
     }
 }
 
-/// Squared distances of one sample to those of a leaf, summed in the order of all distances here.
+/// Squared distances from one sample to those of a leaf, summed in the same order as all distances here.
 #[inline(always)]
 fn squared_distances(leaf: &[[f64; LEAF]], state: impl Iterator<Item = f64>) -> [f64; LEAF] {
     let mut sum = [0.0; LEAF];
@@ -164,7 +164,7 @@ impl WithSimd for Closest<'_> {
     }
 }
 
-/// Gathers what is near one sample of a leaf.
+/// Collects the samples near one sample of a leaf.
 struct Within<'a> {
     tree: &'a SampleTree,
     leaf: usize,
@@ -202,7 +202,8 @@ mod tests {
     use proptest::collection::vec;
     use proptest::prelude::*;
 
-    /// Any number of movements in a few dimensions; few different coordinates, so that many samples are equally near.
+    /// Any number of movements in a few dimensions, with a few distinct coordinates, so that many samples are equally
+    /// near.
     fn movements() -> impl Strategy<Value = Vec<DMatrix<f64>>> {
         (1usize..5).prop_flat_map(|dim| {
             let coordinate = prop_oneof![(-2..3).prop_map(f64::from), -1.0..1.0];
@@ -258,7 +259,7 @@ mod tests {
                     let others = (0..movements.len()).filter(|&k| k != owner);
                     let nearest = others.map(|k| {
                         let to = |i| squared(&movements[owner], m, &movements[k], i);
-                        // The first of equally near ones.
+                        // The first of equally near samples.
                         let i = (1..movements[k].ncols()).fold(0, |best, i| if to(i) < to(best) { i } else { best });
                         let place = Place { trajectory: k as u32, sample: i as u32 };
                         Neighbour { place, squared_distance: to(i) }

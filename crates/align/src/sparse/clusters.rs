@@ -4,19 +4,20 @@ use super::forest::Forest;
 use super::shared_samples::SharedSamples;
 use crate::offsets::compensated::CompensatedSum;
 
-/// Trajectories in clusters, each of which hangs together by strong links, and the links between clusters.
+/// Clusters of trajectories that are connected by strong links, and the links between clusters.
 #[derive(Debug)]
 pub(crate) struct Clusters {
     /// Each ascending; in the order of their lowest members.
     pub(crate) members: Vec<Vec<usize>>,
-    /// For each cluster, the others that it has links to, ascending, and Σ −H_kj between the two.
+    /// For each cluster, the other clusters to which it has links, ascending, and Σ −H_kj between the two.
     pub(crate) links: Vec<Vec<(usize, f64)>>,
 }
 
 impl Clusters {
-    /// Trajectories are together if a sample links them, or a chain of them, by q_o q_k > `strong`. O(nnz log nnz).
+    /// Two trajectories are in one cluster if a sample, or a chain of samples, links them by q_o q_k > `strong`. O(nnz
+    /// log nnz).
     ///
-    /// No other pair of a sample has a larger product than one with its own trajectory o.
+    /// For each sample, the pairs with its own trajectory o have the largest products.
     pub(crate) fn new(samples: &SharedSamples, strong: f64) -> Self {
         let mut forest = Forest::new(samples.n_trajectories);
         for row in samples.rows() {
@@ -31,7 +32,7 @@ impl Clusters {
         Clusters { members, links }
     }
 
-    /// The clusters that links connect, without passing through those excluded; each part ascending.
+    /// The parts of `among` that are connected by links, without passing through `excluded`; each ascending.
     pub(crate) fn parts(&self, among: &[usize], excluded: Option<usize>) -> Vec<Vec<usize>> {
         let mut open: Vec<bool> = vec![false; self.members.len()];
         for &cluster in among {
@@ -58,7 +59,7 @@ impl Clusters {
         parts
     }
 
-    /// The cluster with most members; the first of equally large ones.
+    /// The cluster with the most members; the first among clusters of equal size.
     pub(crate) fn largest(&self, among: &[usize]) -> Option<usize> {
         among.iter().copied().min_by_key(|&cluster| (Reverse(self.members[cluster].len()), cluster))
     }
@@ -70,7 +71,7 @@ impl Clusters {
         all
     }
 
-    /// Weight of a cluster to all others.
+    /// Total weight of the links from a cluster to all others.
     pub(crate) fn degree(&self, cluster: usize) -> f64 {
         self.links[cluster].iter().map(|(_, weight)| weight).sum()
     }

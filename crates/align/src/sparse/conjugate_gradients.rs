@@ -2,11 +2,11 @@ use super::group::{Group, Parts};
 use super::preconditioner::Preconditioner;
 use crate::AlignError;
 
-/// A few dozen steps are usual.
+/// Maximum number of steps; a few dozen are usual.
 const MOST_STEPS: usize = 1000;
 
-/// x with Lx = r and sum 0, (K), by conjugate gradients, until the residual, in the norm of the
-/// preconditioner, is `reduction` of r, which sums to 0 over the group.
+/// Solves Lx = r for x with sum 0, (K), by conjugate gradients, until the residual, in the norm of
+/// the preconditioner, is `reduction` times r. r sums to 0 over the group.
 pub(crate) fn solve(
     group: &Group<'_>,
     preconditioner: &Preconditioner,
@@ -42,7 +42,7 @@ pub(crate) fn solve(
     Err(AlignError::NoConvergence)
 }
 
-/// Takes the mean of the members off them; others become 0.
+/// Subtracts the mean from the members; other entries become 0.
 pub(crate) fn centre(group: &Group<'_>, values: &mut [f64]) {
     let mean = group.members.iter().map(|&k| values[k]).sum::<f64>() / group.members.len() as f64;
     for (value, &member) in values.iter_mut().zip(&group.contains) {

@@ -14,14 +14,14 @@ impl Forest {
         at
     }
 
-    /// Makes one set of two; false if they were one already.
+    /// Merges two sets; returns false if they were already one.
     pub(crate) fn join(&mut self, one: usize, other: usize) -> bool {
         let (one, other) = (self.root(one), self.root(other));
         self.0[one.max(other)] = one.min(other);
         one != other
     }
 
-    /// For each item the number of its set, and all sets.
+    /// The number of each item's set, and all sets.
     pub(crate) fn trees(mut self) -> (Vec<usize>, Vec<Vec<usize>>) {
         let mut of = vec![0; self.0.len()];
         let mut members: Vec<Vec<usize>> = Vec::new();

@@ -4,15 +4,15 @@ use rayon::prelude::*;
 use super::shared_samples::{Block, Row, SharedSamples};
 use crate::offsets::compensated::CompensatedSum;
 
-/// Sums over rows are formed in this many parts, each in the order of its rows, so that no number of threads changes a
-/// bit.
+/// Sums over rows are computed in this many parts, each in the order of its rows, so that the bits do not depend on the
+/// number of threads.
 const PARTS: usize = 8;
 
-/// The Laplacian among a group of trajectories, by the rows of the samples they share: with q of the group only,
-/// s = Σ_k q_k and o a trajectory of the row that is in the group,
+/// The Laplacian of a group of trajectories, from the rows of the samples they share. Let q be restricted to the group,
+/// s be Σ_k q_k, and o be a trajectory of the row that is in the group. Then
 /// (Lv)_k = Σ_m q_km (s_m (v_k − v_o) − Σ_j q_jm (v_j − v_o)).
 ///
-/// Differences to v_o keep the digits of what trajectories that hang together differ by.
+/// Differences from v_o preserve the digits of small differences between strongly connected trajectories.
 #[derive(Debug)]
 pub(crate) struct Group<'a> {
     pub(crate) samples: &'a SharedSamples,
@@ -20,11 +20,11 @@ pub(crate) struct Group<'a> {
     pub(crate) members: &'a [usize],
     /// For each trajectory, whether it is a member.
     pub(crate) contains: Vec<bool>,
-    /// For each trajectory its weight to others outside: what the sub-matrix of H has on its diagonal beyond L.
+    /// For each trajectory, its weight to others outside: the diagonal of the sub-matrix of H minus that of L.
     pub(crate) outside: Vec<f64>,
 }
 
-/// Room for the parts of a sum over rows.
+/// Memory for the parts of a sum over rows.
 #[derive(Debug, Default)]
 pub(crate) struct Parts(Vec<Vec<f64>>);
 
@@ -50,7 +50,7 @@ impl<'a> Group<'a> {
         group
     }
 
-    /// Σ over all rows of what `add` adds to one number for each trajectory.
+    /// Sum over all rows; `add` adds a row's contribution to one number per trajectory.
     fn sum(&self, add: impl Fn(Row<'_>, &mut [f64]) + Sync) -> Vec<f64> {
         let mut total = vec![0.0; self.samples.n_trajectories];
         self.sum_into(&mut Parts::default(), &mut total, add);
@@ -75,7 +75,8 @@ impl<'a> Group<'a> {
         }
     }
 
-    /// The member that the values of a row are relative to: its own trajectory if that is a member, else the first.
+    /// The member that serves as reference for the values of a row: its own trajectory if that is a member, else the
+    /// first.
     fn reference(&self, row: Row<'_>) -> Option<(usize, f64)> {
         if self.contains[row.owner] {
             return Some((row.owner, row.own_share));
@@ -107,7 +108,7 @@ impl<'a> Group<'a> {
         });
     }
 
-    /// Σ of the weights of a trajectory's links, as `links_of` gives them.
+    /// Sum of the weights of each trajectory's links, as returned by `links_of`.
     pub(crate) fn degrees(&self, whole: usize) -> Vec<f64> {
         self.sum(|row, sum| {
             self.links_of(row, whole, |k, j, weight| {
@@ -117,7 +118,8 @@ impl<'a> Group<'a> {
         })
     }
 
-    /// The links of one row: all of them if at most `whole` trajectories share it, else those to its reference only.
+    /// The links of one row: all of them if at most `whole` trajectories share it, otherwise only those to its
+    /// reference.
     pub(crate) fn links_of(&self, row: Row<'_>, whole: usize, mut each: impl FnMut(usize, usize, f64)) {
         let Some((reference, own_share)) = self.reference(row) else { return };
         let members = || row.models.iter().zip(row.shares).map(|(&k, &q)| (k as usize, q));
@@ -130,8 +132,8 @@ impl<'a> Group<'a> {
         }
     }
 
-    /// a (16), (K), among the members once each is raised by its offset: a + Lb, and 0 outside. What flows to one
-    /// trajectory flows from the other, whatever rounding does to it; sums are compensated.
+    /// a (16), (K), among the members after shifting each by its offset: a + Lb, and 0 outside. The flow into one
+    /// trajectory equals the flow out of the other, including rounding; sums are compensated.
     pub(crate) fn linear_term(&self, offsets: &[f64]) -> Vec<f64> {
         let blocks = &self.samples.blocks;
         let parts = blocks.par_chunks(blocks.len().div_ceil(PARTS)).map(|blocks| {
@@ -150,7 +152,7 @@ impl<'a> Group<'a> {
         total.iter().map(CompensatedSum::value).collect()
     }
 
-    /// The sub-matrix of H of a small group, in the order of its members. O(nnz + entries of its rows squared).
+    /// The sub-matrix of H for a small group, in the order of its members. O(nnz + entries of its rows squared).
     pub(crate) fn matrix(&self) -> DMatrix<f64> {
         let position = |k: usize| self.members.binary_search(&k).expect("links are between members");
         let mut matrix = DMatrix::zeros(self.members.len(), self.members.len());
@@ -206,7 +208,7 @@ mod tests {
     use proptest::collection::vec;
     use proptest::prelude::*;
 
-    /// Movements with any values of the potential: at least two, so that some may be members and others not.
+    /// At least two movements, so that some may be members and others not, with arbitrary values of the potential.
     fn movements() -> impl Strategy<Value = (Vec<DMatrix<f64>>, Vec<Vec<f64>>)> {
         let movement = (2usize..20).prop_flat_map(|n| {
             (vec(-1.0..1.0, 2 * n).prop_map(move |x| DMatrix::from_vec(2, n, x)), vec(-5.0..5.0, n))
@@ -249,7 +251,7 @@ mod tests {
             let found = group.linear_term(&masked);
             prop_assert!(expected.iter().zip(&found).all(|(a, b)| (a - b).abs() <= 1e-13 * size), "{expected:?} {found:?}");
 
-            // What strong links connect is solved for; what only weak links do has large solutions.
+            // Solves if the group is connected by strong links; with weak links only, solutions are large.
             let elimination = Elimination::new(&laplacian);
             if members.len() > 1 && laplacian.symmetric_eigenvalues().iter().filter(|&&value| value < 1e-6).count() == 1 {
                 let mut right = masked;
@@ -257,7 +259,7 @@ mod tests {
                 let solved = solve(&group, &Preconditioner::new(&group).unwrap(), right.clone(), 1e-9).unwrap();
                 let expected = DVector::from_vec(elimination.solve(of_members(&right).as_slice()));
                 prop_assert!((of_members(&solved) - &expected).amax() <= 1e-6 * expected.amax());
-                // Few trajectories keep all their links but for those between two who share another's sample.
+                // With few trajectories all links are kept, except those between two that share another's sample.
                 let links = sparsifier(&group);
                 prop_assert!(links.iter().all(|&(k, j, weight)| k < j && weight > 0.0));
                 let mut ends: Vec<usize> = links.iter().flat_map(|&(k, j, _)| [k as usize, j as usize]).collect();

@@ -1,4 +1,4 @@
-/// A number in [0, 1) without any pattern in the key (the finaliser of SplitMix64).
+/// A pseudo-random number in [0, 1) from a key (the finaliser of SplitMix64).
 pub(crate) fn uniform(key: u64) -> f64 {
     let mut z = key.wrapping_add(0x9e37_79b9_7f4a_7c15);
     z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);

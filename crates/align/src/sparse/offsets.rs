@@ -6,15 +6,15 @@ use super::preconditioner::Preconditioner;
 use super::shared_samples::SharedSamples;
 use crate::AlignError;
 
-/// The residuals that rounds leave: the first two solve, the others take away what rounding left.
+/// Residuals after each round: the first two rounds solve, the others reduce rounding errors.
 const REDUCTIONS: [f64; 5] = [1e-9, 1e-9, 1e-5, 1e-5, 1e-5];
-/// A step this small beside the offsets is the last; it leaves 1e-16 of them.
+/// The iteration ends after a step that is this small relative to the offsets; the remaining error is 1e-16 of them.
 const LAST: f64 = 1e-11;
 
-/// The offsets b = −H⁺a (17) of a group of trajectories, in the order of the group and with sum 0, by the mutual
+/// The offsets b = −H⁺a (17) of a group of trajectories, in the order of the group and with sum 0, from the mutual
 /// weights of its members.
 ///
-/// The right-hand side a is evaluated anew from the raised values, f + b, after each solution, as in the dense
+/// After each solution, the right-hand side a is computed again from the shifted values f + b, as in the dense
 /// alignment.
 pub(crate) fn offsets(
     samples: &SharedSamples,
@@ -33,7 +33,7 @@ pub(crate) fn offsets(
         if let Some(&trajectory) = members.iter().find(finite) {
             return Err(AlignError::OffsetOverflow { trajectory });
         }
-        // In units in which no square overflows or vanishes.
+        // In units in which no square overflows or underflows.
         let unit = largest(&right);
         if unit == 0.0 {
             break;

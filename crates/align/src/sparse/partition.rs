@@ -13,22 +13,24 @@ use crate::offsets::bipartition::{Partition, bipartition};
 use crate::offsets::two_means::two_means;
 use crate::{AlignError, Split, SplitCause};
 
-/// Links that are so many thresholds strong hold trajectories together: in an eigenvector below the threshold their
-/// entries differ by 1/√STRONG of its length at most.
+/// Links of at least this number of thresholds keep trajectories together: in an eigenvector below the threshold, their
+/// entries differ by at most 1/√STRONG of its length.
 const STRONG: f64 = 1e4;
-/// So few clusters are looked at in one go, more only with those that hang together apart from the largest.
+/// Up to this number of clusters are examined at once; more only in pieces that are connected without the largest
+/// cluster.
 const FEW: usize = 128;
-/// So few trajectories have a matrix.
+/// Groups of up to this number of trajectories have a matrix.
 const SMALL: usize = 24;
-/// The eigenvectors that are looked for, beside the constant one: about the two clusters with the weakest links, and any.
+/// Number of eigenvectors to compute, besides the constant one: two that start at the clusters with the weakest links,
+/// and an arbitrary one.
 const CANDIDATES: usize = 2;
 
 /// The groups of the recursive bi-partition, without the matrix H.
 ///
-/// Gives the preconditioner of the first group too, if it is not small.
+/// Also returns the preconditioner of the first group, unless the group is small.
 ///
-/// First by clusters that strong links hold together; then the largest group is examined by its own lowest eigenvectors,
-/// and split as long as two are below the threshold.
+/// First divides by clusters that are connected by strong links. Then examines the largest group by its own lowest
+/// eigenvectors, and splits it as long as two are below the threshold.
 pub(crate) fn partition(
     samples: &SharedSamples,
     threshold: f64,
@@ -66,10 +68,10 @@ pub(crate) fn partition(
     Ok((Partition { groups, splits, lambda_2, decompositions }, preconditioner))
 }
 
-/// The groups of clusters that links connect.
+/// The groups of clusters that are connected by links.
 ///
-/// What hangs on the largest cluster does so piece by piece: pieces without links to each other are looked at one after
-/// the other, each beside the largest.
+/// Pieces attached to the largest cluster without links to each other are examined one after the other, each together
+/// with the largest cluster.
 fn groups_of_part(
     clusters: &Clusters,
     part: &[usize],
@@ -106,7 +108,7 @@ fn masses(clusters: &Clusters, among: &[usize]) -> Vec<f64> {
     among.iter().map(|&cluster| clusters.members[cluster].len() as f64).collect()
 }
 
-/// The Laplacian of some clusters by the links among them, divided by the roots of their masses.
+/// The Laplacian of some clusters from the links among them, divided by the square roots of their masses.
 fn quotient(clusters: &Clusters, among: &[usize]) -> DMatrix<f64> {
     let masses = masses(clusters, among);
     let mut matrix = DMatrix::zeros(among.len(), among.len());
@@ -122,7 +124,7 @@ fn quotient(clusters: &Clusters, among: &[usize]) -> DMatrix<f64> {
     matrix
 }
 
-/// What the eigenvectors of a group tell.
+/// Result of examining the eigenvectors of a group.
 struct Examined {
     lambda_2: Option<f64>,
     /// Several if more than one eigenvalue is below the threshold.
@@ -162,8 +164,8 @@ fn examine(
     Ok(Examined { lambda_2, parts, preconditioner: Some(preconditioner) })
 }
 
-/// Where the lowest eigenvectors are looked for: at the clusters with the weakest links, and about some vector that
-/// prefers none, once the preconditioner has made low of it.
+/// Starting vectors for the lowest eigenvectors: the clusters with the weakest links, and an arbitrary vector without
+/// preference, after the preconditioner has amplified its low modes.
 fn starts(group: &Group<'_>, clusters: &Clusters, preconditioner: &Preconditioner) -> Vec<Vec<f64>> {
     let within = |&cluster: &usize| clusters.members[cluster].iter().all(|&k| group.contains[k]);
     let mut weakest: Vec<usize> = (0..clusters.members.len()).filter(within).collect();

@@ -4,8 +4,8 @@ use super::group::Group;
 use super::sparsifier::sparsifier;
 use crate::AlignError;
 
-/// An approximate factor of the links of a group that stand for all: it makes iterations few and has no part in what they
-/// converge to.
+/// An approximate factor of selected links of a group that represent all. It reduces the number of iterations and does
+/// not affect their limit.
 #[derive(Debug)]
 pub(crate) struct Preconditioner {
     factor: LaplacianFactor,
@@ -13,7 +13,7 @@ pub(crate) struct Preconditioner {
 
 impl Preconditioner {
     /// # Errors
-    /// [`AlignError::NoConvergence`] if weights cannot be factorised.
+    /// [`AlignError::NoConvergence`] if the weights cannot be factorised.
     pub(crate) fn new(group: &Group<'_>) -> Result<Self, AlignError> {
         let links = sparsifier(group).into_iter();
         let (ends, weights): (Vec<(u32, u32)>, Vec<f64>) = links.map(|(k, j, weight)| ((k, j), weight)).unzip();
@@ -22,7 +22,8 @@ impl Preconditioner {
         Ok(Preconditioner { factor: factor.ok_or(AlignError::NoConvergence)? })
     }
 
-    /// About L⁺r, (K), in place; 0 outside the group. Allocates nothing once `scratch` has grown.
+    /// Applies an approximation of L⁺ to r, (K), in place; 0 outside the group. Does not allocate once `scratch` has
+    /// grown.
     pub(crate) fn apply(&self, right: &mut [f64], scratch: &mut Vec<f64>) {
         self.factor.solve(right, scratch);
     }

@@ -3,16 +3,17 @@ use rayon::prelude::*;
 use crate::search::{Neighbour, SampleTree};
 use lanes::exp_in_bulk;
 
-/// Leaves of the tree whose samples make one block.
+/// Number of leaves of the tree whose samples form one block.
 const LEAVES: usize = 512;
-/// Bytes of a row, and of each other trajectory in it.
+/// Bytes per row, and per other trajectory in it.
 const PER_ROW: u64 = 8 + 4 + 4;
 const PER_ENTRY: u64 = 4 + 8 + 8;
 
-/// The responsibilities q_km (12) of samples that several trajectories share, and what their local models say there.
+/// The responsibilities q_km (12) of samples that several trajectories share, and the potentials of their local models
+/// there.
 ///
-/// All other samples have q = 1 for their own trajectory: they add nothing to H, nor to a. Everything about H is
-/// calculated from these rows, since H itself has an entry for each pair of trajectories in any of them.
+/// All other samples have q = 1 for their own trajectory and contribute nothing to H or a. All products with H are
+/// computed from these rows, because H itself has an entry for each pair of trajectories in any of them.
 #[derive(Debug)]
 pub(crate) struct SharedSamples {
     /// In the order of the tree, so that neighbours are together.
@@ -23,13 +24,13 @@ pub(crate) struct SharedSamples {
 /// The rows of neighbouring samples, one after the other.
 #[derive(Debug, Default)]
 pub(crate) struct Block {
-    /// For each row its own trajectory o.
+    /// For each row, its own trajectory o.
     owners: Vec<u32>,
-    /// For each row q_om.
+    /// For each row, q_om.
     own_shares: Vec<f64>,
-    /// For each row where its entries end.
+    /// For each row, the end of its entries.
     ends: Vec<u32>,
-    /// Other trajectories k, in each row ascending.
+    /// Other trajectories k, ascending within each row.
     models: Vec<u32>,
     /// q_km.
     shares: Vec<f64>,
@@ -48,8 +49,8 @@ pub(crate) struct Row<'a> {
 }
 
 impl SharedSamples {
-    /// w_km = exp(−min_i ‖x_m − x_ki‖² / 2σ²) (11) down to `squared_radius`, q_km = w_km / Σ_j w_jm (12): the bits of
-    /// the dense alignment, because sums have the same order.
+    /// w_km = exp(−min_i ‖x_m − x_ki‖² / 2σ²) (11) down to `squared_radius`, q_km = w_km / Σ_j w_jm (12), with the same
+    /// bits as in the dense alignment, because sums have the same order.
     pub(crate) fn new(tree: &SampleTree, potentials: &[Vec<f64>], sigma_squared: f64, squared_radius: f64) -> Self {
         let blocks = (0..tree.n_leaves().div_ceil(LEAVES)).into_par_iter().map(|block| {
             let leaves = block * LEAVES..tree.n_leaves().min((block + 1) * LEAVES);
@@ -71,7 +72,7 @@ impl SharedSamples {
         self.blocks.iter().flat_map(Block::rows)
     }
 
-    /// Bytes that so many samples take, each with so many other trajectories.
+    /// Bytes for `samples` samples, each with `others` other trajectories.
     pub(crate) fn bytes(samples: u64, others: f64) -> u64 {
         samples * PER_ROW + (samples as f64 * others * PER_ENTRY as f64) as u64
     }

@@ -4,27 +4,27 @@ use super::forest::Forest;
 use super::group::Group;
 use super::hash::uniform;
 
-/// Rows with at most so many trajectories give all their links, others those to one trajectory only.
+/// Rows with at most this number of trajectories contribute all their links, others only those to one trajectory.
 const WHOLE: usize = 4;
-/// At most so many links are drawn for each trajectory on average.
+/// Upper bound on the average number of links drawn per trajectory.
 const DRAWN: f64 = 12.0;
-/// Weaker links are beneath notice, and beyond what a factorisation can divide by.
+/// Weaker links are negligible, and too small for a factorisation to divide by.
 const WEAKEST: f64 = 1e-200;
 
-/// The link of two trajectories, the lower first, and its weight.
+/// The link between two trajectories, the lower first, and its weight.
 pub(crate) type Link = (u32, u32, f64);
 
-/// Some links of a group, a few for each trajectory, whose Laplacian resembles that of all: a spanning forest of strong
-/// links; of the others a link (k, j) of weight w with probability p = min(1, c w (1/D_k + 1/D_j)) and then with
+/// Selected links of a group, a few for each trajectory, whose Laplacian approximates that of all: a spanning forest of
+/// strong links, and each other link (k, j) of weight w with probability p = min(1, c w (1/D_k + 1/D_j)) and then with
 /// weight w/p, where D are the degrees and c is `DRAWN`.
 ///
-/// What is drawn is a function of the links, the same at any number of threads. O(nnz log nnz).
+/// The selection is a function of the links, the same at any number of threads. O(nnz log nnz).
 pub(crate) fn sparsifier(group: &Group<'_>) -> Vec<Link> {
     let degrees = group.degrees(WHOLE);
     let blocks = group.samples.blocks.par_iter().map(|block| {
         let mut links: Vec<Link> = Vec::new();
         block.rows().for_each(|row| group.links_of(row, WHOLE, |k, j, weight| links.push(link(k, j, weight))));
-        // A strongest forest of all links has only such links as are in those of the blocks.
+        // The strongest forest of all links contains only links that are in the forests of the blocks.
         let (forest, others) = spanning_forest(merged(links));
         (forest, drawn(others, &degrees))
     });
@@ -40,7 +40,7 @@ fn link(k: usize, j: usize, weight: f64) -> Link {
     (k.min(j) as u32, k.max(j) as u32, weight)
 }
 
-/// One link for each pair, in their order. Equal pairs are ordered by weight, so that sums have one order.
+/// One link for each pair, sorted. Equal pairs are ordered by weight, so that sums have a fixed order.
 fn merged(mut links: Vec<Link>) -> Vec<Link> {
     links.par_sort_unstable_by(|a, b| (a.0, a.1).cmp(&(b.0, b.1)).then(a.2.total_cmp(&b.2)));
     links.dedup_by(|next, kept| {
@@ -51,7 +51,7 @@ fn merged(mut links: Vec<Link>) -> Vec<Link> {
     links
 }
 
-/// The strongest links that connect whatever links connect, without any circle, and all others (Kruskal).
+/// A spanning forest of the strongest links, without cycles, and all other links (Kruskal).
 fn spanning_forest(mut links: Vec<Link>) -> (Vec<Link>, Vec<Link>) {
     links.par_sort_unstable_by(|a, b| b.2.total_cmp(&a.2).then((a.0, a.1).cmp(&(b.0, b.1))));
     let mut names: Vec<u32> = links.iter().flat_map(|&(k, j, _)| [k, j]).collect();

@@ -6,16 +6,16 @@ use super::group::{Group, Parts};
 use super::preconditioner::Preconditioner;
 use crate::AlignError;
 
-/// The second eigenvalue has settled when a round changes it by less than this part.
+/// The second eigenvalue has converged when a round changes it by less than this share.
 const SETTLED: f64 = 1e-6;
-/// So many rounds show other low eigenvectors than those that were guessed.
+/// Minimum number of rounds, which reveal low eigenvectors other than the starting vectors.
 const FEWEST_ROUNDS: usize = 3;
-/// Rayleigh quotients are bounds from above after any number of rounds.
+/// Maximum number of rounds. Rayleigh quotients are upper bounds after any number of rounds.
 const MOST_ROUNDS: usize = 24;
-/// What orthogonalisation leaves of a vector less than this is rounding.
+/// If orthogonalisation leaves less than this share of a vector, the rest is rounding.
 const DEPENDENT: f64 = 1e-8;
 
-/// The lowest eigenvalues of the sub-matrix of H of a group, ascending from the first, and their vectors, (K) each.
+/// The lowest eigenvalues of the sub-matrix of H for a group, ascending, and their vectors, (K) each.
 #[derive(Debug)]
 pub(crate) struct Modes {
     pub(crate) values: Vec<f64>,
@@ -23,7 +23,7 @@ pub(crate) struct Modes {
 }
 
 /// Rayleigh–Ritz on the vectors of the last round, their preconditioned residuals and their last steps (Knyazev's
-/// LOBPCG), from the constant vector and these others, until the second eigenvalue settles.
+/// LOBPCG), starting from the constant vector and `others`, until the second eigenvalue converges.
 pub(crate) fn weak_modes(
     group: &Group<'_>,
     preconditioner: &Preconditioner,
@@ -58,8 +58,8 @@ pub(crate) fn weak_modes(
     Ok(Modes { values: modes.values, vectors: modes.vectors })
 }
 
-/// Ritz values and vectors, their images under the sub-matrix of H, and what of them the first vectors of the basis
-/// do not have.
+/// Ritz values and vectors, their images under the sub-matrix of H, and their parts outside the span of the first basis
+/// vectors.
 struct Ritz {
     values: Vec<f64>,
     vectors: Vec<Vec<f64>>,
@@ -83,7 +83,7 @@ fn ritz(group: &Group<'_>, basis: &[Vec<f64>], wanted: usize) -> Result<Ritz, Al
     Ok(Ritz { values: values[..wanted].to_vec(), vectors: all(basis, 0), images: all(&images, 0), steps })
 }
 
-/// The sub-matrix of H times a vector: L and what goes outside.
+/// The sub-matrix of H times a vector: L plus the weights to the outside.
 fn image(group: &Group<'_>, vector: &[f64], parts: &mut Parts) -> Vec<f64> {
     let mut image = vec![0.0; vector.len()];
     group.laplacian_times(vector, parts, &mut image);
@@ -97,11 +97,11 @@ fn residual((&value, (vector, image)): (&f64, (&Vec<f64>, &Vec<f64>))) -> Vec<f6
     residual
 }
 
-/// Adds vectors to an orthonormal basis, unless they depend on it.
+/// Adds vectors to an orthonormal basis, unless they depend linearly on it.
 fn extend(basis: &mut Vec<Vec<f64>>, vectors: impl Iterator<Item = Vec<f64>>) {
     for mut vector in vectors {
         let before = dot(&vector, &vector).sqrt();
-        // Twice is enough (Kahan, Parlett).
+        // Two passes suffice (Kahan, Parlett).
         for _ in 0..2 {
             for known in basis.iter() {
                 let part = dot(known, &vector);

@@ -1,4 +1,4 @@
-//! Movements drawn at random: any number of trajectories, lengths, dimensions and time steps.
+//! Random movements: any number of trajectories, lengths, dimensions and time steps.
 
 use align::{Bandwidth, Integration};
 use motion::{Demonstrations, Trajectory};
@@ -19,7 +19,7 @@ fn trajectory(dim: usize) -> impl Strategy<Value = Trajectory> {
     })
 }
 
-/// At least `least` trajectories with velocities, in 1 to 7 dimensions: more than the search unrolls, and fewer.
+/// At least `least` trajectories with velocities, in 1 to 7 dimensions: both more and fewer than the search unrolls.
 pub(crate) fn demonstrations(least: usize) -> impl Strategy<Value = Demonstrations> {
     (1usize..8)
         .prop_flat_map(move |dim| vec(trajectory(dim), least..8))
@@ -39,7 +39,7 @@ pub(crate) fn bandwidth() -> impl Strategy<Value = Bandwidth> {
     ]
 }
 
-/// The same movements with all positions mapped, velocities too by `velocity`, and time steps kept.
+/// The same movements with all positions mapped, velocities mapped by `velocity`, and time steps unchanged.
 #[allow(dead_code)] // Not every test maps.
 pub(crate) fn mapped(
     demonstrations: &Demonstrations,

@@ -1,4 +1,5 @@
-//! Every stage of the alignment as the paper writes it: plain loops, slow, to hold the fast one against.
+//! Every stage of the alignment implemented literally from the paper: plain, slow loops, as a reference for the fast
+//! one.
 
 use align::{Bandwidth, Integration};
 use motion::{Demonstrations, Trajectory};
@@ -7,13 +8,13 @@ use nalgebra::{DMatrix, DVector};
 pub(crate) struct Literal {
     pub(crate) potentials: Vec<Vec<f64>>,
     pub(crate) sigma_squared: f64,
-    /// For each sample of the data: q_km and f_km for all k.
+    /// For each sample of the data, q_km and f_km for all k.
     pub(crate) shares: Vec<Vec<f64>>,
     pub(crate) values: Vec<Vec<f64>>,
 }
 
 impl Literal {
-    /// With weights below `floor` dropped: the largest at any sample is 1, that of its own trajectory.
+    /// Drops weights below `floor`; the largest at any sample is 1, that of its own trajectory.
     pub(crate) fn new(
         demonstrations: &Demonstrations,
         integration: Integration,
@@ -50,7 +51,7 @@ impl Literal {
         sum
     }
 
-    /// Half its gradient.
+    /// Half the gradient of the objective.
     pub(crate) fn slope(&self, group: &[usize], offsets: &[f64]) -> Vec<f64> {
         let raised = |f: &[f64], at: usize| f[group[at]] + offsets[at];
         let slope = |at: usize| {

@@ -3,7 +3,7 @@ use nalgebra::{DMatrix, DVectorView};
 use rand::{Rng, RngExt};
 use rand_distr::StandardNormal;
 
-/// A(x) = A₀ + Σ_j x_j B_j: what is forbidden turns with the state.
+/// A(x) = A₀ + Σ_j x_j B_j: the forbidden directions turn with the state.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DriftingConstraint {
     /// A₀, (k, n).

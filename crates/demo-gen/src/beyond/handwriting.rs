@@ -4,24 +4,25 @@ use motion::Policy;
 use nalgebra::{DVectorView, DVectorViewMut, Vector2};
 use rand::{Rng, RngExt};
 
-/// Points along the line.
+/// Number of steps along the line.
 const POINTS: usize = 120;
 
 /// Standard deviation of the weights about the nearest point of the line, in units of the state.
 const WIDTH: f64 = 0.2;
 
-/// A policy that writes a wavy line from left to right on the plane and comes to rest at its end: near the line it
-/// follows it, beside it, it returns. Free movement of this kind is no gradient flow, and all of it lies in a corridor.
+/// A policy that writes a wavy line from left to right on the plane and comes to rest at its end. Near the line it
+/// follows it; elsewhere it returns to it. Such free movement is no gradient flow, and stays in a corridor around the
+/// line.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Handwriting {
-    /// Where the line passes, and the velocity wanted there.
+    /// Points of the line, and the desired velocities there.
     line: Vec<(Vector2<f64>, Vector2<f64>)>,
-    /// How fast a way back is, in 1/s.
+    /// Rate of the return to the line, in 1/s.
     back: f64,
 }
 
 impl Handwriting {
-    /// A random line of three waves from x₁ = −2 to 2, written in about 30 s.
+    /// Draws a random line of three waves from x₁ = −2 to 2, written in about 30 s.
     pub fn draw<R: Rng + ?Sized>(rng: &mut R) -> Self {
         let waves: Vec<(f64, f64, f64)> = [1.0, 2.0, 3.0]
             .map(|count| (TAU * count, rng.random_range(0.4..1.2) / count, rng.random_range(0.0..TAU)))
@@ -37,7 +38,7 @@ impl Handwriting {
         Handwriting { line: line.collect(), back: 0.3 }
     }
 
-    /// Where the line begins.
+    /// The beginning of the line.
     pub fn start(&self) -> Vector2<f64> {
         self.line[0].0
     }

@@ -1,8 +1,8 @@
-//! Movements beyond the paper's: policies of other shapes, with and without a potential, in 2 to 22 dimensions.
+//! Movements beyond the paper's: other policies, with and without a potential, in 2 to 22 dimensions.
 //!
-//! - [`Wells`], [`Planes`]: potentials; [`Swirl`], [`LimitCycle`], [`Handwriting`]: policies that have none.
+//! - [`Wells`], [`Planes`]: potentials; [`Swirl`], [`LimitCycle`], [`Handwriting`]: policies without a potential.
 //! - [`DriftingConstraint`]: random rows that turn with the state.
-//! - [`BeyondSystem`]: data sets of them, free, constrained, or both ([`ConstraintKind`]).
+//! - [`BeyondSystem`]: data sets of these, free, constrained, or both ([`ConstraintKind`]).
 
 mod direction;
 mod drifting_constraint;

@@ -5,8 +5,8 @@ use rand_distr::StandardNormal;
 
 use super::direction::direction;
 
-/// φ(x) = m Σ_k σ(w_kᵀx − b_k) + b‖x‖², where σ bends from 0 to a slope of 1: planes that meet at edges, sharp ones where
-/// the edge is 0 wide (σ(y) = max(y, 0)), else rounded (σ(y) = h log(1 + e^(y/h))).
+/// φ(x) = m Σ_k σ(w_kᵀx − b_k) + b‖x‖², where the slope of σ rises from 0 to 1: planes that meet at edges, which are
+/// sharp for an edge of width 0 (σ(y) = max(y, 0)), else rounded (σ(y) = h log(1 + e^(y/h))).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Planes {
     /// w_k, of length 1, (n, K).
@@ -22,7 +22,7 @@ pub struct Planes {
 }
 
 impl Planes {
-    /// Three planes in random directions, edges `edge` wide.
+    /// Draws three planes in random directions, with edges of width `edge`.
     pub fn draw<R: Rng + ?Sized>(dim: usize, edge: f64, rng: &mut R) -> Self {
         let normals: Vec<_> = (0..3).map(|_| direction(dim, rng)).collect();
         let offsets = DVector::from_fn(3, |_, _| 0.2 + 0.3 * rng.sample::<f64, _>(StandardNormal).abs());

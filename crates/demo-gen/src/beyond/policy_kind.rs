@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::{Handwriting, LimitCycle, Planes, Swirl, Wells};
 use crate::{DemoGenError, Sinusoidal};
 
-/// What kind of policy is shown; each data set draws its own.
+/// The kind of the demonstrated policy, from which each data set draws one.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub enum PolicyKind {
     /// The paper's sinusoidal potential on the plane, the same in every data set.
@@ -33,16 +33,16 @@ pub enum PolicyKind {
     Handwriting,
 }
 
-/// A policy with its potential, or one that has none.
+/// A policy given by its potential, or one without a potential.
 pub(super) enum Field {
     OfPotential(Box<dyn Potential>),
     OfPolicy(Box<dyn Policy>),
 }
 
-/// What one data set shows, and where its movements begin.
+/// The policy of one data set, and the region of its starts.
 pub(super) struct Scene {
     pub(super) field: Field,
-    /// Middle of the cube of starts, (n).
+    /// Centre of the cube of starts, (n).
     pub(super) middle: Vec<f64>,
     /// Half its edge, in units of the state.
     pub(super) half_width: f64,
@@ -57,7 +57,7 @@ impl PolicyKind {
         }
     }
 
-    /// Whether its policy descends a potential.
+    /// Whether its policy has a potential.
     pub fn has_potential(self) -> bool {
         matches!(self, PolicyKind::Sinusoidal | PolicyKind::Wells { .. } | PolicyKind::Planes { .. })
     }

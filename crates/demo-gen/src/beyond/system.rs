@@ -9,20 +9,20 @@ use crate::instant::{Actor, System};
 use crate::recording::record_each;
 use crate::{DemoGenError, Recording, Redraw, RollOut};
 
-/// Which of the movements are constrained, and how.
+/// The constraints on the movements of a data set.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub enum ConstraintKind {
-    /// None is.
+    /// No movement is constrained.
     Free,
-    /// Each, by constraints of its own.
+    /// Every movement has separate constraints.
     Varying,
-    /// All by the same constraint, all the time.
+    /// All movements share the same constraint, all the time.
     OneForAll,
-    /// Every other one, by constraints of its own; the first is free.
+    /// Every second movement has separate constraints; the first is free.
     HalfFree,
 }
 
-/// Movements that a learner of the paper's examples has not met: other policies, in 2 to 22 dimensions, under random
+/// Movements unlike the paper's examples: other policies, in 2 to 22 dimensions, under random
 /// constraints that turn with the state ([`DriftingConstraint`], about one forbidden direction in four).
 ///
 /// ```
@@ -45,9 +45,9 @@ pub struct BeyondSystem {
     pub constraint: ConstraintKind,
     /// Number of trajectories K. Default 60.
     pub n_trajectories: usize,
-    /// When a constraint of one movement's own changes. Default every 20 samples.
+    /// When a movement's separate constraint changes. Default every 20 samples.
     pub redraw: Redraw,
-    /// Samples, time step and sub-steps. Default 40 samples one second apart, 50 Euler steps between two.
+    /// Samples, time step and sub-steps. Default 40 samples at intervals of one second, with 50 Euler steps between two.
     pub roll_out: RollOut,
 }
 
@@ -66,12 +66,12 @@ impl Default for BeyondSystem {
 impl BeyondSystem {
     /// One data set: K movements of one policy from starts in a cube.
     ///
-    /// The generator is asked for the policy, for the constraint that all share, and then, trajectory after trajectory,
-    /// for the start and each constraint in order of time. `truth.potential` is empty where the policy has no potential.
+    /// Draws from the generator the policy, the shared constraint, and then for each trajectory the start and its constraints
+    /// in order of time. `truth.potential` is empty if the policy has no potential.
     ///
     /// # Errors
     /// [`DemoGenError::TooFewDimensions`], [`DemoGenError::Edge`], [`DemoGenError::NoTrajectory`],
-    /// [`DemoGenError::Redraw`], or what [`RollOut::record`] says.
+    /// [`DemoGenError::Redraw`], or those of [`RollOut::record`].
     pub fn record<R: Rng + ?Sized>(&self, rng: &mut R) -> Result<Vec<Recording>, DemoGenError> {
         self.policy.check()?;
         self.roll_out.check()?;

@@ -4,7 +4,7 @@ use rand::Rng;
 
 use super::direction::direction;
 
-/// φ(x) = −Σ_k a_k exp(−‖x − c_k‖²/2s²) + b‖x‖²: hollows in a wide bowl. Smooth, and in no family of polynomials.
+/// φ(x) = −Σ_k a_k exp(−‖x − c_k‖²/2s²) + b‖x‖²: wells in a wide bowl. Smooth, but not a polynomial.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Wells {
     /// a_k, in units of the state squared per second.
@@ -18,7 +18,8 @@ pub struct Wells {
 }
 
 impl Wells {
-    /// Three wells in random directions from the origin, as far from each other and as steep in any dimension `dim`.
+    /// Draws three wells in random directions from the origin. Their distances and steepness are similar in any
+    /// dimension `dim`.
     pub fn draw<R: Rng + ?Sized>(dim: usize, rng: &mut R) -> Self {
         let root = (dim as f64).sqrt();
         let width = 0.75 * root;

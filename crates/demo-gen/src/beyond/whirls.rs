@@ -3,7 +3,7 @@ use nalgebra::{DMatrix, DVectorView, DVectorViewMut};
 use rand::{Rng, RngExt};
 use rand_distr::StandardNormal;
 
-/// π(x) = −a x + b e^(−‖x‖²/2n) S x with S skew: to the origin, turning on the way. No potential has this policy.
+/// π(x) = −a x + b e^(−‖x‖²/2n) S x with S skew: moves to the origin while turning. It has no potential.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Swirl {
     /// a, in 1/s.
@@ -15,7 +15,7 @@ pub struct Swirl {
 }
 
 impl Swirl {
-    /// A swirl that turns in random planes of `dim` ≥ 2 dimensions.
+    /// Draws a swirl that turns in random planes of `dim` ≥ 2 dimensions.
     pub fn draw<R: Rng + ?Sized>(dim: usize, rng: &mut R) -> Self {
         let entries = DMatrix::from_fn(dim, dim, |_, _| rng.sample::<f64, _>(StandardNormal));
         let skew = &entries - entries.transpose();
@@ -36,7 +36,7 @@ impl Policy for Swirl {
     }
 }
 
-/// π(x) = v[(1 − ‖x‖²)x + (−x₂, x₁)] on the plane: onto the unit circle, and round it for ever.
+/// π(x) = v[(1 − ‖x‖²)x + (−x₂, x₁)] on the plane: moves onto the unit circle, and round it for ever.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LimitCycle {
     /// v, in 1/s.

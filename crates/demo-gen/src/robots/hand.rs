@@ -4,14 +4,14 @@ use nalgebra::{DMatrix, DMatrixViewMut, DVectorView, Matrix3xX, Vector3};
 
 use crate::DemoGenError;
 
-/// The Jacobian of a hand's position as a [`PointConstraint`] wants it: a function that fills a matrix (3, n) at a
+/// The Jacobian of a hand's position in the form that [`PointConstraint`] requires: a function that fills a matrix (3, n) at a
 /// configuration q (n) of `robot`, rows vx vy vz in the root link's axes.
 ///
-/// Each call has memory of its own: threads share nothing and wait for nothing.
+/// Each call allocates separate memory, so that threads share nothing and need not wait.
 ///
 /// # Errors
-/// The function answers with [`DemoGenError::HandJacobian`] for a matrix of another shape, and [`DemoGenError::Robot`]
-/// for a configuration that the robot refuses.
+/// The function returns [`DemoGenError::HandJacobian`] for a matrix of another shape, and [`DemoGenError::Robot`]
+/// for a configuration that the robot rejects.
 pub fn hand_jacobian(
     robot: &RobotModel,
     hand: &Chain,
@@ -28,7 +28,7 @@ pub fn hand_jacobian(
     }
 }
 
-/// A hand that may not leave a plane with this normal, in the root link's axes: A(q) = nᵀJ(q) (27).
+/// A constraint that keeps a hand in a plane with this normal, in the root link's axes: A(q) = nᵀJ(q) (27).
 pub(crate) fn hand_in_plane(
     robot: &RobotModel,
     hand: &Chain,

@@ -7,23 +7,23 @@ use crate::recording::record_each;
 use crate::robots::hand::hand_in_plane;
 use crate::{DemoGenError, Parabola, Recording, RollOut, Side, UpperBody};
 
-/// The humanoid of Section 4.3 that moves all its joints while one hand, left or right at random, stays in a plane
-/// with a normal uniform on the sphere, another in each trajectory.
+/// The humanoid of Section 4.3, which moves all its joints while one hand, left or right at random, stays in a plane. Each
+/// trajectory has a different normal, uniformly distributed on the sphere.
 ///
-/// Starts are [`UpperBody::start`]s. The movements themselves know neither limits nor collisions, as in the paper;
-/// [`n_leaving_limits`](crate::n_leaving_limits) counts.
+/// Starts are [`UpperBody::start`]s. As in the paper, the movements ignore joint limits and collisions;
+/// [`n_leaving_limits`](crate::n_leaving_limits) counts those that leave the limits.
 #[derive(Debug, Clone, Serialize)]
 pub struct HandInPlane {
-    /// The robot; it is not stored with the rest, its URDF is.
+    /// The robot. It is not serialised with the rest; its URDF describes it.
     #[serde(skip)]
     pub body: UpperBody,
-    /// φ. In the paper w = 0.05; the default's centre is 0: upright, with hanging arms.
+    /// φ. The paper has w = 0.05; the default's centre is 0: upright, with hanging arms.
     pub potential: Parabola,
     /// Variance of each coordinate of the starts around "ready", in rad² or m². Default 0.1.
     pub start_variance: f64,
     /// Number of trajectories K. Default 100.
     pub n_trajectories: usize,
-    /// How each is simulated. Default 100 samples, 0.5 s apart, plain Euler.
+    /// Parameters of the simulation. Default 100 samples, 0.5 s apart, plain Euler.
     pub roll_out: RollOut,
 }
 
@@ -37,11 +37,11 @@ impl HandInPlane {
 
     /// One data set.
     ///
-    /// Trajectory after trajectory, the generator is asked for the start, the side, and the normal.
+    /// For each trajectory, draws from the generator the start, the side, and the normal.
     ///
     /// # Errors
-    /// [`DemoGenError::NoTrajectory`], or [`DemoGenError::InTrajectory`] with what [`UpperBody::start`] and
-    /// [`RollOut::record`] say.
+    /// [`DemoGenError::NoTrajectory`], or [`DemoGenError::InTrajectory`] with those of [`UpperBody::start`] and
+    /// [`RollOut::record`].
     pub fn record<R: Rng + ?Sized>(&self, rng: &mut R) -> Result<Vec<Recording>, DemoGenError> {
         record_each(self.n_trajectories, || {
             let start = self.body.start(self.start_variance, rng)?;

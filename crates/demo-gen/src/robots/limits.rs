@@ -2,7 +2,7 @@ use kinematics::RobotModel;
 
 use crate::{DemoGenError, Recording};
 
-/// How many of the recorded movements leave the joint limits of `robot` at any of their samples.
+/// Number of recorded movements that leave the joint limits of `robot` at any of their samples.
 ///
 /// # Errors
 /// [`DemoGenError::Robot`] if the recordings are not of this robot's configurations.

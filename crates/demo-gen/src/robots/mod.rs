@@ -1,4 +1,4 @@
-//! Demonstrations by robots.
+//! Demonstrations with robots.
 
 pub(crate) mod hand;
 pub(crate) mod hand_in_plane;

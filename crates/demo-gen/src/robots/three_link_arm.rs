@@ -8,8 +8,8 @@ use crate::recording::{check_start_range, record_each};
 use crate::robots::hand::hand_in_plane;
 use crate::{DemoGenError, Parabola, Recording, RollOut};
 
-/// The planar arm of Section 4.4, whose constraints all leave the same direction unseen: each trajectory keeps the link
-/// `hand` on a line in the plane z = 0, with a normal uniform on the circle.
+/// The planar arm of Section 4.4, whose constraints all hide the same direction: in each trajectory the link
+/// `hand` stays on a line in the plane z = 0, with a normal uniform on the circle.
 ///
 /// ```
 /// use demo_gen::{ThreeLinkArm, demonstrations};
@@ -28,24 +28,24 @@ use crate::{DemoGenError, Parabola, Recording, RollOut};
 /// ```
 #[derive(Debug, Clone, Serialize)]
 pub struct ThreeLinkArm {
-    /// The arm; its link `hand` is constrained. It is not stored with the rest, its URDF is.
+    /// The arm, whose link `hand` is constrained. It is not serialised with the rest; its URDF describes it.
     #[serde(skip)]
     pub robot: RobotModel,
-    /// φ. In the paper w = 0.05, centre 0: the arm stretched along x.
+    /// φ. The paper has w = 0.05 and centre 0: the arm stretched along x.
     pub potential: Parabola,
     /// Starts are uniform in [−`start_range`, `start_range`) for each joint, in radians. Default 1.
     pub start_range: f64,
     /// Number of trajectories K. Default 100.
     pub n_trajectories: usize,
-    /// How each is simulated. Default 100 samples, 0.5 s apart, plain Euler.
+    /// Parameters of the simulation. Default 100 samples, 0.5 s apart, plain Euler.
     pub roll_out: RollOut,
 }
 
 impl ThreeLinkArm {
-    /// The paper's set-up with the arm that the text of a URDF describes.
+    /// The paper's set-up, with an arm given by the text of a URDF.
     ///
     /// # Errors
-    /// [`DemoGenError::Robot`] for what cannot be read.
+    /// [`DemoGenError::Robot`] for a URDF that cannot be read.
     pub fn new(urdf: &str) -> Result<Self, DemoGenError> {
         let robot = RobotModel::from_urdf(urdf)?;
         let potential = Parabola { weight: 0.05, centre: DVector::zeros(robot.n_joints()) };
@@ -55,11 +55,11 @@ impl ThreeLinkArm {
 
     /// One data set.
     ///
-    /// Trajectory after trajectory, the generator is asked for the start, joint by joint, and then for the normal.
+    /// For each trajectory, draws from the generator the start, joint by joint, and then the normal.
     ///
     /// # Errors
     /// [`DemoGenError::Robot`] without a link `hand`, [`DemoGenError::StartRange`], [`DemoGenError::NoTrajectory`], or
-    /// [`DemoGenError::InTrajectory`] with what [`RollOut::record`] says.
+    /// [`DemoGenError::InTrajectory`] with those of [`RollOut::record`].
     pub fn record<R: Rng + ?Sized>(&self, rng: &mut R) -> Result<Vec<Recording>, DemoGenError> {
         let range = self.start_range;
         check_start_range(range)?;

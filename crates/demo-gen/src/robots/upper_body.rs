@@ -15,10 +15,10 @@ const READY: [(&str, f64); 6] = [
     ("r_elbow", -1.6),
 ];
 
-/// Links that are the hands' frames.
+/// The hands' frames.
 const PALMS: [&str; 2] = ["l_palm", "r_palm"];
 
-/// Colliding draws in a row after which the posture itself must be at fault.
+/// Number of successive draws in collision after which the posture itself must be at fault.
 const MOST_DRAWS: usize = 10_000;
 
 /// One of the two hands.
@@ -35,8 +35,8 @@ impl Side {
     pub const BOTH: [Side; 2] = [Side::Left, Side::Right];
 }
 
-/// The humanoid of Sections 4.2 and 4.3: a robot of the joints and palms of `robots/asimo_upper_body.urdf`, what of it
-/// must not touch, and the posture "ready".
+/// The humanoid of Sections 4.2 and 4.3: a robot with the joints and palms of `robots/asimo_upper_body.urdf`, its pairs
+/// of links that must not touch, and the posture "ready".
 #[derive(Debug, Clone)]
 pub struct UpperBody {
     robot: RobotModel,
@@ -46,12 +46,12 @@ pub struct UpperBody {
 }
 
 impl UpperBody {
-    /// The body that the texts of a URDF and an SRDF describe. Links `l_palm` and `r_palm` are the hands; the posture
+    /// The body given by the texts of a URDF and an SRDF. Links `l_palm` and `r_palm` are the hands; the posture
     /// "ready" has the joints `{l,r}_shoulder_pitch` at 0.3, `{l,r}_shoulder_roll` at ±0.3 (outwards), `{l,r}_elbow`
     /// at −1.6, and all others at 0, in radians and metres.
     ///
     /// # Errors
-    /// [`DemoGenError::Robot`] for what cannot be read, and for links or joints that are not there.
+    /// [`DemoGenError::Robot`] for texts that cannot be read, and for missing links or joints.
     pub fn new(urdf: &str, srdf: &str) -> Result<Self, DemoGenError> {
         let robot = RobotModel::from_urdf(urdf)?;
         let mut collision = SelfCollision::new(&robot, |_| None)?;
@@ -70,7 +70,7 @@ impl UpperBody {
         &self.robot
     }
 
-    /// What of the robot must not touch.
+    /// The pairs of links that must not touch.
     pub fn collision(&self) -> &SelfCollision {
         &self.collision
     }
@@ -85,7 +85,7 @@ impl UpperBody {
         &self.palms[side as usize]
     }
 
-    /// Where both hands are at a configuration q (n), left and right, metres in the heel's frame.
+    /// Positions of the left and the right palm at a configuration q (n), metres in the heel's frame.
     ///
     /// # Errors
     /// [`DemoGenError::Robot`] for a configuration of another length or with values that are not finite.
@@ -96,10 +96,10 @@ impl UpperBody {
         Ok([origin(left)?, origin(right)?])
     }
 
-    /// A start configuration (n): drawn from N(ready, `variance`·I), clipped to the joints' limits, and drawn anew
+    /// A start configuration (n): drawn from N(ready, `variance`·I), clipped to the joints' limits, and redrawn
     /// until it is free of self-collision. The paper's variance is 0.1.
     ///
-    /// Each draw asks the generator for n normal numbers, in the order of the joints.
+    /// Each draw takes n normal numbers from the generator, in the order of the joints.
     ///
     /// # Errors
     /// [`DemoGenError::StartVariance`], or [`DemoGenError::NoFreeStart`] after ten thousand draws in collision.

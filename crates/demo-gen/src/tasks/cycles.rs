@@ -9,7 +9,7 @@ use crate::instant::{Actor, System};
 use crate::recording::{check_start_range, record_each};
 use crate::{DemoGenError, Recording, RollOut};
 
-/// A limit cycle on the plane, each movement under a constant aᵀu = b of its own with a on the unit circle.
+/// A limit cycle on the plane. Each movement has a separate constant constraint aᵀu = b, with a on the unit circle.
 ///
 /// ```
 /// use demo_gen::tasks::CyclesWithTask;
@@ -31,7 +31,7 @@ pub struct CyclesWithTask {
     pub n_trajectories: usize,
     /// Starts are uniform in [−`start_range`, `start_range`)². Default 1.5.
     pub start_range: f64,
-    /// How each is simulated. Default 100 samples at 50 Hz, one Euler step from one to the next.
+    /// Parameters of the simulation. Default 100 samples at 50 Hz, one Euler step from one to the next.
     pub roll_out: RollOut,
 }
 
@@ -43,15 +43,15 @@ impl Default for CyclesWithTask {
 }
 
 impl CyclesWithTask {
-    /// The policy, the same in every data set: round the unit circle in 2π s.
+    /// The policy, the same in every data set: once round the unit circle in 2π s.
     pub const POLICY: LimitCycle = LimitCycle { speed: 1.0 };
 
-    /// One data set. Trajectory after trajectory, the generator is asked for the start x₁, x₂, for a, and for b, so that the same seed
+    /// One data set. For each trajectory, draws from the generator the start x₁, x₂, then a, then b, so that the same seed
     /// gives the same starts and the same a whatever the task.
     ///
     /// # Errors
-    /// [`DemoGenError::Task`], [`DemoGenError::StartRange`], [`DemoGenError::NoTrajectory`], or [`DemoGenError::InTrajectory`] with what
-    /// [`RollOut::record`] says.
+    /// [`DemoGenError::Task`], [`DemoGenError::StartRange`], [`DemoGenError::NoTrajectory`], or [`DemoGenError::InTrajectory`] with
+    /// those of [`RollOut::record`].
     pub fn record<R: Rng + ?Sized>(&self, rng: &mut R) -> Result<Vec<Recording>, DemoGenError> {
         check_start_range(self.start_range)?;
         check_task(self.largest_task)?;

@@ -1,6 +1,6 @@
-//! Movements that carry out a task beside their policy: A(x) u = b(x), so that u = Nπ + A⁺b. The generators follow the examples of
-//! Armesto, Moura, Ivan, Salas and Vijayakumar (RSS 2017) and of the same with Erden (IJRR 2018): a limit cycle on the plane, and an arm
-//! of seven joints that wipes surfaces of random tilt.
+//! Movements that perform a task in addition to their policy: A(x) u = b(x), so that u = Nπ + A⁺b. The generators follow the examples of
+//! Armesto, Moura, Ivan, Salas and Vijayakumar (RSS 2017), and of the same authors with Erden (IJRR 2018): a limit cycle on the plane,
+//! and an arm with seven joints that wipes surfaces of random tilt.
 
 mod cycles;
 mod surface;

@@ -4,9 +4,9 @@ use nalgebra::{DMatrix, DVector, DVectorView, IsometryMatrix3, Matrix3, Matrix6x
 
 use super::TaskConstraint;
 
-/// A tool flat on a surface with normal n through a point s: of its position along n and of its orientation about both tangents t,
-/// A(q) = [nᵀJ_v; t₁ᵀJ_ω; t₂ᵀJ_ω] (3, n), with b(q) = −κ [nᵀ(p − s); t₁ᵀ(a × n); t₂ᵀ(a × n)], which brings the tool back: p is its position,
-/// a its axis, which comes to point along −n.
+/// Constraint that keeps a tool flat on a surface with normal n through a point s. It applies to the tool's position along n and its
+/// orientation about both tangents t: A(q) = [nᵀJ_v; t₁ᵀJ_ω; t₂ᵀJ_ω] (3, n), with b(q) = −κ [nᵀ(p − s); t₁ᵀ(a × n); t₂ᵀ(a × n)], which
+/// brings the tool back. Here p is its position and a its axis, which converges to −n.
 #[derive(Debug, Clone)]
 pub struct Surface {
     tool: Chain,
@@ -20,9 +20,9 @@ pub struct Surface {
 }
 
 impl Surface {
-    /// A surface for the tool at the end of a chain of a robot with `dim` joints; its normal is of length 1.
+    /// A surface for the tool at the end of a chain of a robot with `dim` joints; its normal has length 1.
     pub(super) fn new(tool: Chain, dim: usize, normal: Vector3<f64>, point: Vector3<f64>, rate: f64) -> Self {
-        // Never along the normal: surfaces tilt by less than a right angle.
+        // Not parallel to the normal, because surfaces tilt by less than a right angle.
         let first = normal.cross(&Vector3::x()).normalize();
         let axes = Matrix3::from_columns(&[normal, first, normal.cross(&first)]).transpose();
         Surface { tool, dim, axes, point, rate }
@@ -37,7 +37,7 @@ impl Surface {
         Ok((pose, jacobian))
     }
 
-    /// How far the tool is from where it belongs: −b/κ, in metres and radians.
+    /// Deviation of the tool from the surface: −b/κ, in metres and radians.
     pub(super) fn error(&self, pose: &IsometryMatrix3<f64>) -> Vector3<f64> {
         let turned = pose.rotation * Vector3::z();
         let turn = self.axes * turned.cross(&self.normal());

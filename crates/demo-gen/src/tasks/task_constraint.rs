@@ -1,15 +1,15 @@
 use constraints::{ConstraintError, LinearConstraint, PfaffianConstraint};
 use nalgebra::{DMatrix, DVector, DVectorView};
 
-/// A constraint A(x) u = b(x) with b ≠ 0: the rows of A carry out a task, and the policy acts in their null space.
+/// A constraint A(x) u = b(x) with b ≠ 0: the rows of A perform a task, and the policy acts in their null space.
 pub trait TaskConstraint: PfaffianConstraint {
     /// b(x), (k), in the units of A u.
     ///
     /// # Errors
-    /// [`ConstraintError`] for a state that the constraint is not for.
+    /// [`ConstraintError`] for a state to which the constraint does not apply.
     fn task(&self, state: DVectorView<'_, f64>) -> Result<DVector<f64>, ConstraintError>;
 
-    /// The velocity A⁺b that the task demands, (n).
+    /// The velocity A⁺b that the task requires, (n).
     ///
     /// # Errors
     /// Those of [`TaskConstraint::task`] and [`PfaffianConstraint::matrix`]; [`ConstraintError::NotFinite`] also for an entry of b, in
@@ -19,7 +19,7 @@ pub trait TaskConstraint: PfaffianConstraint {
     }
 }
 
-/// A⁺b. Rows are scaled to length 1, so that their units do not decide which of them count; singular values below 1e-12 count as 0.
+/// A⁺b. Rows are scaled to length 1, so that the rank does not depend on their units; singular values below 1e-12 count as 0.
 fn least_norm(mut matrix: DMatrix<f64>, mut right: DVector<f64>) -> Result<DVector<f64>, ConstraintError> {
     for row in 0..matrix.nrows() {
         if let Some(column) = matrix.row(row).iter().position(|entry| !entry.is_finite()) {
@@ -35,17 +35,17 @@ fn least_norm(mut matrix: DMatrix<f64>, mut right: DVector<f64>) -> Result<DVect
     let svd = matrix.clone().svd(true, true);
     let solve = |right: &DVector<f64>| svd.solve(right, 1e-12).unwrap_or_else(|_| DVector::zeros(matrix.ncols()));
     let velocity = solve(&right);
-    // What the decomposition's rounding has left.
+    // One step of iterative refinement, against rounding errors of the decomposition.
     let rest = &right - &matrix * &velocity;
     Ok(velocity + solve(&rest))
 }
 
-/// Refuses an entry of b, in column n.
+/// Checks that an entry of b is finite; the error names column n.
 fn require_finite(row: usize, column: usize, value: f64) -> Result<(), ConstraintError> {
     if value.is_finite() { Ok(()) } else { Err(ConstraintError::NotFinite { row, column, value }) }
 }
 
-/// The same A and b at every state and time.
+/// A constraint with the same A and b at every state and time.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LinearTask {
     constraint: LinearConstraint,
@@ -59,7 +59,7 @@ impl LinearTask {
     /// Those of [`LinearConstraint::new`]; [`ConstraintError::NotFinite`] also for an entry of b, in column n.
     ///
     /// # Panics
-    /// If b has not one entry for each row of A.
+    /// If the number of entries of b differs from the number of rows of A.
     pub fn new(matrix: DMatrix<f64>, task: DVector<f64>) -> Result<Self, ConstraintError> {
         assert_eq!(matrix.nrows(), task.len(), "one entry of b for each row of A");
         for (row, &value) in task.iter().enumerate() {

@@ -11,51 +11,51 @@ use crate::recording::record_each;
 use crate::robots::hand::hand_in_plane;
 use crate::{DemoGenError, Recording, RollOut};
 
-/// Elbow bent, tool downwards, 0.55 m before the base and 0.40 m above its foot.
+/// Elbow bent, tool downwards, 0.55 m in front of the base and 0.40 m above its foot.
 const READY: [f64; 7] = [0.0, 0.5, 0.0, -1.6, 0.0, std::f64::consts::PI - 2.1, 0.0];
 
-/// Newton steps that put the tool on its surface.
+/// Number of Newton steps that move the tool onto its surface.
 const STEPS_TO_SURFACE: usize = 10;
 
-/// What of the tool a surface holds.
+/// The degrees of freedom of the tool that a surface constrains.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub enum Contact {
-    /// Its height: nᵀJ_v(q) u = 0, one row.
+    /// The tool's height: nᵀJ_v(q) u = 0, one row.
     Height,
-    /// That it is flat on the surface: [`Surface`], three rows that bring it back where it is off.
+    /// Flat contact: [`Surface`], three rows that also correct deviations.
     Flat,
 }
 
-/// An arm of seven joints that follows a [`WipingPolicy`] on a surface, in each movement of another tilt.
+/// An arm with seven joints that follows a [`WipingPolicy`] on a surface, whose tilt differs between movements.
 #[derive(Debug, Clone, Serialize)]
 pub struct Wiping {
-    /// The policy of the arm; not stored with the rest, its URDF is.
+    /// The arm's policy. It is not serialised with the rest; the arm's URDF describes it.
     #[serde(skip)]
     pub policy: WipingPolicy,
     #[serde(skip)]
     robot: RobotModel,
-    /// What a surface holds.
+    /// The degrees of freedom that a surface constrains.
     pub contact: Contact,
     /// Surfaces are tilted about x and then about y by angles uniform in [−`largest_tilt`, `largest_tilt`), in radians, below a right angle.
     /// Default π/6.
     pub largest_tilt: f64,
     /// Standard deviation of the starts about "ready" in each joint, in radians. Default 0.1.
     pub start_deviation: f64,
-    /// Flat contact: the tool starts on its surface but for a displacement of this standard deviation in each joint, in radians. Default 0.03.
+    /// Flat contact: standard deviation of the displacement of each joint from the start on the surface, in radians. Default 0.03.
     pub off_surface: f64,
     /// Flat contact: κ of [`Surface`], in 1/s. Default 2.
     pub task_rate: f64,
     /// Number of trajectories K. Default 50.
     pub n_trajectories: usize,
-    /// How each is simulated. Default 100 samples at 20 Hz, one Euler step from one to the next.
+    /// Parameters of the simulation. Default 100 samples at 20 Hz, one Euler step from one to the next.
     pub roll_out: RollOut,
 }
 
 impl Wiping {
-    /// The arm that the text of a URDF describes: seven joints, and a link `tool`.
+    /// The arm given by the text of a URDF with seven joints and a link `tool`.
     ///
     /// # Errors
-    /// [`DemoGenError::Robot`] for what cannot be read, [`DemoGenError::Joints`] for another number of joints.
+    /// [`DemoGenError::Robot`] for a URDF that cannot be read, [`DemoGenError::Joints`] for another number of joints.
     pub fn new(urdf: &str, contact: Contact) -> Result<Self, DemoGenError> {
         let robot = RobotModel::from_urdf(urdf)?;
         if robot.n_joints() != READY.len() {
@@ -87,12 +87,12 @@ impl Wiping {
         &self.policy.tool
     }
 
-    /// One data set. Trajectory after trajectory, the generator is asked for both tilts, for the start, joint by joint, and, for flat
-    /// contact, for its displacement.
+    /// One data set. For each trajectory, draws from the generator both tilts, the start, joint by joint, and, for flat
+    /// contact, its displacement.
     ///
     /// # Errors
     /// [`DemoGenError::Tilt`], [`DemoGenError::Deviation`], [`DemoGenError::TaskRate`], [`DemoGenError::NoTrajectory`], or
-    /// [`DemoGenError::InTrajectory`] with what [`RollOut::record`] says.
+    /// [`DemoGenError::InTrajectory`] with those of [`RollOut::record`].
     pub fn record<R: Rng + ?Sized>(&self, rng: &mut R) -> Result<Vec<Recording>, DemoGenError> {
         self.check()?;
         record_each(self.n_trajectories, || self.record_one(rng))
@@ -118,7 +118,7 @@ impl Wiping {
         }
     }
 
-    /// The start moved to where the task is done, by Newton's method: b = 0.
+    /// The start, moved onto the surface by Newton's method: b = 0.
     fn on(&self, surface: &Surface, mut start: DVector<f64>) -> Result<DVector<f64>, DemoGenError> {
         let at_start = |source: ConstraintError| DemoGenError::Constraint { sample: 0, source };
         for _ in 0..STEPS_TO_SURFACE {
@@ -144,7 +144,7 @@ impl Wiping {
     }
 }
 
-/// Displacements of all joints, (n).
+/// Random displacements of all joints, (n).
 fn scatter<R: Rng + ?Sized>(deviation: f64, rng: &mut R) -> DVector<f64> {
     DVector::from_fn(READY.len(), |_, _| deviation * rng.sample::<f64, _>(StandardNormal))
 }

@@ -2,9 +2,9 @@ use kinematics::{Chain, KinematicsError, Workspace};
 use motion::Policy;
 use nalgebra::{DVector, DVectorView, DVectorViewMut, Matrix3xX, Vector3};
 
-/// An arm whose tool circles about a vertical axis, in the manner of resolved-rate control:
+/// A policy that circles the tool of an arm about a vertical axis, in the manner of resolved-rate control:
 /// π(q) = J⁺v(p) + (I − J⁺J) k(q₀ − q), with p the tool's position, J its Jacobian (3, n) and r = (p − c) in the horizontal plane,
-/// v = ω [e_z × r + r (R² − |r|²)/(R² + |r|²) + (c_z − p_z) e_z]. It is the same whatever surface is wiped, and has no potential.
+/// v = ω [e_z × r + r (R² − |r|²)/(R² + |r|²) + (c_z − p_z) e_z]. It does not depend on the surface that is wiped, and has no potential.
 #[derive(Debug, Clone)]
 pub struct WipingPolicy {
     /// The joints that lead to the tool.
@@ -30,7 +30,7 @@ impl WipingPolicy {
         self.rate * Vector3::new(outward * away.x - away.y, outward * away.y + away.x, -away.z)
     }
 
-    /// π(q), (n); not finite where the arm is singular.
+    /// π(q), (n); not finite if the arm is singular.
     fn act(&self, q: DVectorView<'_, f64>) -> Result<DVector<f64>, KinematicsError> {
         let mut jacobian = Matrix3xX::zeros(q.len());
         let position = self.tool.position_jacobian(q, &mut Workspace::new(), &mut jacobian)?;
@@ -50,7 +50,7 @@ impl Policy for WipingPolicy {
     fn action_into(&self, state: DVectorView<'_, f64>, mut action: DVectorViewMut<'_, f64>) {
         match self.act(state) {
             Ok(acted) => action.copy_from(&acted),
-            Err(_) => action.fill(f64::NAN), // refused by whoever records
+            Err(_) => action.fill(f64::NAN), // the recorder rejects it
         }
     }
 }

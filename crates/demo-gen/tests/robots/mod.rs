@@ -1,4 +1,4 @@
-//! The robots of the paper's experiments, from the project's own files.
+//! The robots of the paper's experiments, from the project's files.
 use demo_gen::{ThreeLinkArm, UpperBody};
 
 pub(crate) const UPPER_BODY: &str = include_str!("../../../../robots/asimo_upper_body.urdf");

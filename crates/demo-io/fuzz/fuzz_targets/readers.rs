@@ -5,7 +5,7 @@ mod readers;
 
 libfuzzer_sys::fuzz_target!(
     init: {
-        // The fuzzer ends at every panic; those at damaged files become errors.
+        // The fuzzer aborts at every panic, but panics on damaged files become errors.
         let ends = std::panic::take_hook();
         std::panic::set_hook(Box::new(move |panic| {
             if !demo_io::catches_panics() {

@@ -2,15 +2,15 @@ use std::io::Write as _;
 
 use demo_io::{ReadOptions, read};
 
-/// A file of any bytes is recordings, or an error in three lines. Its first line may hold options as JSON, which it is read
-/// with: `{"sort":true}`.
+/// Any bytes yield recordings or an error in three lines. The first line of the file may hold the reading options as JSON:
+/// `{"sort":true}`.
 pub(crate) fn readers(bytes: &[u8]) {
     let end = bytes.iter().position(|&byte| byte == b'\n').unwrap_or(0);
     let (mut options, content) = match serde_json::from_slice::<ReadOptions>(&bytes[..end]) {
         Ok(options) => (options, &bytes[end + 1..]),
         Err(_) => (ReadOptions::default(), bytes),
     };
-    // Whoever trusts a file lets it take any memory.
+    // A trusted file may take any amount of memory.
     options.trust = false;
     let mut file = tempfile::NamedTempFile::new().expect("a folder for files");
     file.write_all(content).expect("room for a file");

@@ -1,37 +1,37 @@
-//! Arrays of any format: what they are, and their numbers.
+//! Arrays of any format: descriptions and contents.
 
 use crate::ReadError;
 use crate::raw::remark;
 use crate::rows::stamps::{Stamp, TicksPerSecond};
 use motion::Finding;
 
-/// What a file says of an array before its numbers are read.
+/// Description of an array, read before its numbers.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct ArraySpec {
     pub(crate) name: String,
-    /// The last index runs fastest.
+    /// In C order: the last index runs fastest.
     pub(crate) shape: Vec<usize>,
     pub(crate) kind: Kind,
 }
 
-/// What an array holds.
+/// Contents of an array.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Kind {
-    /// Numbers, with the format's name for them: "float32".
+    /// Numbers, with the format's name for their type: "float32".
     Number(&'static str),
-    /// Letters.
+    /// Characters.
     Text,
     /// Python objects.
     Pickled,
-    /// Something else, by its name: "complex128".
+    /// Another type, by its name: "complex128".
     Other(String),
 }
 
-/// The content of an array, the last index running fastest.
+/// The contents of an array; the last index runs fastest.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Data {
     Numbers(Vec<f64>),
-    /// Whole numbers, which stamps need exactly.
+    /// Integers. Stamps need them exactly.
     Whole(Vec<i64>),
     /// Dates.
     Dates(Vec<i64>, TicksPerSecond),
@@ -51,7 +51,7 @@ impl ArraySpec {
         format!("{} ({})", self.name, shape_text(&self.shape))
     }
 
-    /// Whole numbers and short ones are noise that the user should know of.
+    /// A finding about integers and short floating-point numbers, whose rounding acts as noise.
     pub(crate) fn coarse(&self, file: &str) -> Option<Finding> {
         let Kind::Number(kind) = self.kind else { return None };
         let (name, next) = (&self.name, "save float32 or float64");
@@ -78,7 +78,7 @@ impl Data {
         }
     }
 
-    /// As f64; text is none.
+    /// The contents as f64; `None` for text.
     pub(crate) fn numbers(self) -> Option<Vec<f64>> {
         match self {
             Data::Numbers(numbers) => Some(numbers),
@@ -96,7 +96,7 @@ impl Data {
         }
     }
 
-    /// As a label: whole numbers without a point.
+    /// The value at an index as a label; integers have no decimal point.
     pub(crate) fn label(&self, at: usize) -> String {
         match self {
             Data::Numbers(numbers) => format!("{}", numbers[at]),
@@ -105,7 +105,7 @@ impl Data {
         }
     }
 
-    /// The last index slowest instead of fastest: what Fortran order needs to become C order.
+    /// Reorders values from Fortran order, where the first index runs fastest, to C order, where the last one does.
     pub(crate) fn in_c_order(self, shape: &[usize]) -> Self {
         match self {
             Data::Numbers(numbers) => Data::Numbers(transposed(&numbers, shape)),
@@ -116,7 +116,7 @@ impl Data {
     }
 }
 
-/// Values in the order in which the last index of `shape` runs fastest, from the order in which the first does.
+/// Reorders values from Fortran order (the first index of `shape` runs fastest) to C order (the last one does).
 pub(crate) fn transposed<T: Clone>(values: &[T], shape: &[usize]) -> Vec<T> {
     let mut strides = Vec::with_capacity(shape.len());
     let mut stride = 1;
@@ -148,7 +148,7 @@ mod tests {
 
     #[test]
     fn fortran_order_is_undone() {
-        // a[i][j][k] = 100 i + 10 j + k of shape (2, 3, 2), the first index fastest.
+        // a[i][j][k] = 100 i + 10 j + k of shape (2, 3, 2); the first index runs fastest.
         let mut fortran = Vec::new();
         for k in 0..2 {
             for j in 0..3 {

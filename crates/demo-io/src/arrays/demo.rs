@@ -1,4 +1,4 @@
-//! Demonstrations that the names of arrays tell apart.
+//! Demonstrations that are distinguished by the names of arrays.
 
 use std::collections::HashMap;
 
@@ -7,15 +7,15 @@ use crate::arrays::array::ArraySpec;
 use crate::names::natural;
 use crate::names::selection::{flags, is_number, parts};
 
-/// One demonstration: names of its arrays, and their indices among all.
+/// One demonstration: the names of its arrays, and their indices among all arrays.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Demo {
     pub(crate) name: String,
     pub(crate) fields: Vec<(String, usize)>,
 }
 
-/// Arrays whose names are numbered, one a demonstration: `demo_0`, `demo_1`; `x_0`, `v_0`, `x_1`, `v_1`; `demo_0/x`.
-/// What has no number belongs to all. None if this is not how the file is made.
+/// Demonstrations in arrays with numbered names: `demo_0`, `demo_1`; `x_0`, `v_0`, `x_1`, `v_1`; `demo_0/x`. Arrays
+/// without a number belong to every demonstration. `None` if the file has another layout.
 pub(crate) fn families(described: &[ArraySpec], options: &ReadOptions) -> Option<Vec<Demo>> {
     let names: Vec<&str> = described.iter().map(|array| &array.name[..]).collect();
     let mut demos: Vec<Demo> = Vec::new();
@@ -39,7 +39,7 @@ pub(crate) fn families(described: &[ArraySpec], options: &ReadOptions) -> Option
     if !numbered_plane || other_plane {
         return None;
     }
-    // A pattern of the user that names every demonstration names the family.
+    // A user's pattern that matches every demonstration names the family.
     let by_name: Vec<String> =
         parts(&options.state, &names).filter(|part| !is_number(part)).map(str::to_owned).collect();
     let asked = flags(&by_name, &names);
@@ -58,7 +58,7 @@ pub(crate) fn families(described: &[ArraySpec], options: &ReadOptions) -> Option
     Some(demos)
 }
 
-/// The demonstration and the field that a name names: `x_12` is `12` and `x`, `demo_12/x` is `demo_12` and `x`.
+/// Splits a name into demonstration and field: `x_12` is `12` and `x`, `demo_12/x` is `demo_12` and `x`.
 fn numbered(name: &str) -> Option<(String, String)> {
     if let Some((group, field)) = name.split_once('/') {
         return group.ends_with(|letter: char| letter.is_ascii_digit()).then(|| (group.to_owned(), field.to_owned()));

@@ -1,4 +1,4 @@
-//! Roles of arrays, from their names.
+//! Assigns roles to arrays by their names.
 
 use crate::arrays::array::{ArraySpec, Kind};
 use crate::arrays::within::{Part, Within, arrays, parts};
@@ -10,31 +10,31 @@ use crate::{Fault, ReadError, ReadOptions};
 /// Indices of arrays by role.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub(crate) struct Fields {
-    /// Several are joined, channel after channel.
+    /// Several arrays are joined, channel after channel.
     pub(crate) state: Vec<usize>,
     pub(crate) velocity: Vec<usize>,
     pub(crate) time: Option<usize>,
-    /// A time step.
+    /// The time step.
     pub(crate) step: Option<usize>,
     /// Samples per second.
     pub(crate) rate: Option<usize>,
-    /// A label per sample.
+    /// A label for each sample.
     pub(crate) episode: Option<usize>,
-    /// Where episodes end.
+    /// The ends of episodes.
     pub(crate) ends: Option<usize>,
     pub(crate) constraint: Option<usize>,
     pub(crate) names: Option<usize>,
     pub(crate) units: Option<usize>,
     pub(crate) episode_names: Option<usize>,
-    /// Arrays beside the state of which the user names columns.
+    /// Arrays other than the state in which the user selects columns.
     pub(crate) beside: Vec<usize>,
-    /// What the user names within the arrays of the state and those beside it.
+    /// The user's selections within the arrays of the state and of `beside`.
     pub(crate) within: Within,
     /// Arrays that the user ignores.
     ignored: Vec<usize>,
 }
 
-/// Best first.
+/// Names of the state, best first.
 const STATES: [&str; 22] = [
     "state",
     "states",
@@ -92,7 +92,7 @@ const NEVER: [&str; 12] = [
     "*rgb*",
 ];
 
-/// Assigns arrays, of which all belong to one movement or to one set of movements.
+/// Assigns roles to arrays that all belong to one movement or to one set of movements.
 pub(crate) fn assign(described: &[ArraySpec], options: &ReadOptions, place: &str) -> Result<Fields, ReadError> {
     let names: Vec<&str> = described.iter().map(|array| &array.name[..]).collect();
     let within = Within::of(options, described);
@@ -150,7 +150,7 @@ pub(crate) fn assign(described: &[ArraySpec], options: &ReadOptions, place: &str
     }
     fields.beside = fields.within.beside(&fields.state, described);
     if options.velocity.is_empty() {
-        // What is empty is no velocity, whatever its name.
+        // An empty array holds no velocities, whatever its name.
         ignored.iter_mut().zip(described).for_each(|(ignored, array)| *ignored |= array.shape.contains(&0));
         fields.velocity = fields.guess_velocities(&names, &ignored);
     }
@@ -180,17 +180,18 @@ impl Fields {
         self.has_role(index) || self.state.contains(&index) || self.beside.contains(&index)
     }
 
-    /// Whether the user does not want it.
+    /// Whether the user ignores the array.
     pub(crate) fn ignores(&self, index: usize) -> bool {
         self.ignored.contains(&index)
     }
 
-    /// The arrays that are joined, channel after channel: the state, and what is beside it.
+    /// The arrays that are joined, channel after channel: the state and `beside`.
     pub(crate) fn block(&self) -> impl Iterator<Item = usize> + '_ {
         self.state.iter().chain(&self.beside).copied()
     }
 
-    /// The name of an array without a role that has the shape of the state's only one, where there are no velocities: it may hold them.
+    /// The name of an array that may hold the velocities, if none were found: it has no role, and the shape of the only array of the
+    /// state.
     pub(crate) fn like_velocities<'a>(&self, arrays: &'a [ArraySpec], elsewhere: &[String]) -> Option<&'a str> {
         let &[state] = &self.state[..] else { return None };
         let shape = &arrays[state].shape;
@@ -202,7 +203,7 @@ impl Fields {
         names.find(|&name| flags(elsewhere, &[name]) == [false])
     }
 
-    /// The velocity of every array of the state, or none.
+    /// The velocity of every array of the state, or an empty list.
     fn guess_velocities(&self, names: &[&str], ignored: &[bool]) -> Vec<usize> {
         let free = |name: &str| {
             (0..names.len())
@@ -219,7 +220,7 @@ impl Fields {
     }
 }
 
-/// The array with the best name, or the only one that can be.
+/// The array with the best name, or the only candidate.
 fn guess_state(
     described: &[ArraySpec],
     fields: &Fields,

@@ -1,4 +1,4 @@
-//! Arrays with names, side by side: one array an episode, one array of all, or one after another.
+//! Named arrays side by side: one array per episode, one for all episodes, or one with the episodes in sequence.
 
 use std::collections::HashMap;
 use std::ops::Range;
@@ -27,13 +27,13 @@ pub(crate) fn drafts(
     Columns(ArrayReader { input, described, demo: None, arrays: described, fields, named_by_array: false }).drafts(load)
 }
 
-/// The arrays of a file, which hold all episodes.
+/// The arrays of a file, each of which holds all episodes.
 struct Columns<'a>(ArrayReader<'a>);
 
 impl Columns<'_> {
     fn drafts(&self, load: &mut Load<'_>) -> Result<RawRecordings, ReadError> {
         let ArrayReader { input, fields, described, .. } = self.0;
-        // What is short is read first: it may refuse.
+        // The short arrays are read first, because they may lead to an error.
         let step = match (period(input.options)?, fields.time) {
             (Some(step), _) => Some(vec![step]),
             (None, Some(_)) => None,
@@ -74,7 +74,7 @@ impl Columns<'_> {
         Ok(RawRecordings { channels, episodes, findings, word: "sample", drop_constant: false, unknown, context })
     }
 
-    /// Which samples each episode has.
+    /// The samples of each episode.
     fn ranges(&self, state: &Stack, load: &mut Load<'_>) -> Result<Vec<Samples>, ReadError> {
         let ArrayReader { input, fields, described, .. } = self.0;
         let file = &input.name;
@@ -127,7 +127,7 @@ impl Columns<'_> {
         }
         let Some(field) = self.0.fields.time else { return Ok(Vec::new()) };
         let name = &self.0.arrays[field].name;
-        // Stamps of one episode may hold for all of them.
+        // The stamps of one episode may apply to all episodes.
         let all = state.episodes * state.samples;
         let counts = if state.episodes > 1 { [all, state.samples] } else { [all; 2] };
         let stamps = self.0.by_sample(field, &counts, load)?;
@@ -140,7 +140,7 @@ impl Columns<'_> {
     }
 }
 
-/// Some samples of a whole.
+/// Some samples of all.
 struct Samples {
     name: String,
     rows: Vec<usize>,

@@ -1,4 +1,4 @@
-//! Arrays in groups: a group a demonstration, with the same names in each.
+//! Arrays in groups: one group per demonstration, with the same names in each.
 
 use crate::arrays::array::{ArraySpec, Load};
 use crate::arrays::demo::Demo;
@@ -14,7 +14,7 @@ pub(crate) struct GroupedArrays<'a> {
     pub(crate) input: &'a Input<'a>,
     pub(crate) described: &'a [ArraySpec],
     pub(crate) demos: Vec<Demo>,
-    /// Seconds between samples, if the file says so elsewhere.
+    /// Seconds between samples, if another part of the file states them.
     pub(crate) step: Option<f64>,
     /// As in [`ArrayReader`].
     pub(crate) named_by_array: bool,
@@ -36,7 +36,7 @@ impl GroupedArrays<'_> {
         let fields = &assign(&arrays, input.options, &format!("{file}, {}", first.name))?;
         let reader = |demo| ArrayReader { input, described, demo: Some(demo), arrays: &arrays, fields, named_by_array };
         let step = period(input.options)?;
-        // Without numbers.
+        // Kept without its numbers.
         let mut first_state: Option<ReadState> = None;
         let mut episodes = Vec::with_capacity(self.demos.len());
         for demo in &self.demos {
@@ -77,7 +77,7 @@ impl GroupedArrays<'_> {
         Ok(RawRecordings { channels, episodes, findings, word: "sample", drop_constant: false, unknown, context })
     }
 
-    /// Seconds of `len` samples: by the step that the user gave, else by stamps, else by a step in the file.
+    /// Seconds of `len` samples: from the user's step, else from stamps, else from a step in the file.
     fn times(
         &self,
         arrays: &ArrayReader<'_>,

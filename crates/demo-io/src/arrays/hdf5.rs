@@ -40,7 +40,7 @@ pub(crate) fn read(input: &Input<'_>, progress: &mut dyn FnMut(u64)) -> Result<R
     })
 }
 
-/// The groups in `parent` that hold arrays, in natural order. Arrays in `obs` go by their name alone.
+/// The groups in `parent` that hold arrays, in natural order. Arrays in `obs` are known by their names alone.
 fn demos(tree: &mut Tree<'_>, parent: &Folder) -> Result<Vec<Demo>, ReadError> {
     let mut names = tree.ok(parent.groups())?;
     names.retain(|name| !matches!(&name[..], "mask" | "meta"));
@@ -59,7 +59,7 @@ fn demos(tree: &mut Tree<'_>, parent: &Folder) -> Result<Vec<Demo>, ReadError> {
             }
         }
         let own = tree.arrays(&group, "")?;
-        // Next to observations, the simulator's whole state is used only on request.
+        // If there are observations, the full simulator state is used only on request.
         let asked = |name: &str| !observed || name != "states" || !tree.input.options.state.is_empty();
         fields.extend(own.into_iter().filter(|(name, _)| asked(name)));
         if !fields.is_empty() {
@@ -131,7 +131,7 @@ fn text(value: &AttrValue) -> Option<&str> {
     }
 }
 
-/// A mask that does not exist.
+/// Error: a mask that does not exist.
 fn no_mask(filter: &str, known: &[String], file: &str) -> ReadError {
     let what = format!("there is no filter '{filter}' in /mask");
     ReadError::NoColumn(Fault::new(what, file, format!("--filter with one of: {}", shortened(known))))

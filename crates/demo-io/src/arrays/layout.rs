@@ -1,11 +1,11 @@
-//! How the indices of an array are samples, channels and episodes.
+//! Maps the indices of an array to samples, channels and episodes.
 
 use crate::arrays::array::{ArraySpec, shape_text, transposed};
 use crate::arrays::fields::too_many_channels;
 use crate::input::Input;
 use crate::{Fault, ReadError, SamplesAre};
 
-/// The state of some episodes as one array: K episodes of N samples of n channels, sample after sample.
+/// The state of K episodes of N samples of n channels as one array, sample after sample.
 #[derive(Debug, Default)]
 pub(crate) struct Stack {
     pub(crate) episodes: usize,
@@ -14,7 +14,7 @@ pub(crate) struct Stack {
     pub(crate) numbers: Vec<f64>,
 }
 
-/// K, N, n of a shape, as it lies in memory.
+/// K, N, n of an array's shape in its memory order.
 pub(crate) fn dimensions(
     array: &ArraySpec,
     input: &Input<'_>,
@@ -50,7 +50,7 @@ pub(crate) fn dimensions(
     }
 }
 
-/// Puts numbers in the order of samples.
+/// Reorders numbers so that they follow one another sample by sample.
 pub(crate) fn stack(array: &ArraySpec, numbers: Vec<f64>, input: &Input<'_>, place: &str) -> Result<Stack, ReadError> {
     let (episodes, samples, channels) = dimensions(array, input, place)?;
     too_many_channels(channels, place)?;
@@ -60,7 +60,7 @@ pub(crate) fn stack(array: &ArraySpec, numbers: Vec<f64>, input: &Input<'_>, pla
     }
     let columns = input.samples_are() == Some(SamplesAre::Columns) && array.shape.len() > 1;
     let numbers = if columns && !numbers.is_empty() {
-        // (channels, samples) read as if in Fortran order, episode by episode.
+        // (channels, samples), episode by episode; reading them as if in Fortran order transposes them.
         numbers.chunks_exact(channels * samples).flat_map(|one| transposed(one, &[samples, channels])).collect()
     } else {
         numbers
@@ -85,7 +85,7 @@ impl Stack {
     }
 }
 
-/// Arrays that belong together differ in length.
+/// Error: arrays that belong together differ in length.
 pub(crate) fn lengths(what: &str, expected: usize, found: usize, place: &str) -> ReadError {
     let what = format!("{what}: {found} samples where {expected} are expected");
     let remedy = "arrays of equal length; --samples-are if rows and columns are exchanged";

@@ -1,4 +1,4 @@
-//! MAT-files of version 5 to 7. MATLAB stores columns first, so indices are handed on in reverse order.
+//! MAT-files of versions 5 to 7. MATLAB stores columns first, so indices are passed on in reverse order.
 
 mod elements;
 mod value;
@@ -42,7 +42,7 @@ pub(crate) fn read(input: &Input<'_>, progress: &mut dyn FnMut(u64)) -> Result<R
     }
 }
 
-/// A single structure is a folder of variables.
+/// Flattens a single structure, which is a folder of variables.
 fn flatten((name, value): (String, Value), variables: &mut Vec<(String, Value)>) {
     match value {
         Value::Struct { fields, values } if values.len() == fields.len() && !is_demo(&fields) => {
@@ -65,7 +65,7 @@ struct Store {
 }
 
 impl Store {
-    /// The index of what is an array; lists of texts are.
+    /// Adds a value and returns its index; `None` if it is no array. A list of texts counts as an array.
     fn add(&mut self, name: &str, value: &Value) -> Option<usize> {
         let (shape, kind, data) = match value {
             Value::Numbers { shape, kind, data } => {
@@ -86,7 +86,7 @@ impl Store {
         Some(self.data.len() - 1)
     }
 
-    /// Demonstrations of a cell array of structures or of arrays, or of an array of structures.
+    /// Demonstrations in a cell array of structures or of arrays, or in an array of structures.
     fn demos(&mut self, name: &str, value: &Value) -> Option<Vec<Demo>> {
         let demos: Vec<Demo> = match value {
             Value::Struct { fields, values } if !fields.is_empty() => {

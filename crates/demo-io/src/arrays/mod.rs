@@ -1,4 +1,4 @@
-//! Files of arrays: what is described before it is read, and which array is what.
+//! Files of arrays: descriptions, which are read first, and the roles of the arrays.
 
 pub(crate) mod array;
 pub(crate) mod demo;

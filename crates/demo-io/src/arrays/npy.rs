@@ -16,7 +16,7 @@ use crate::raw::RawRecordings;
 
 pub(crate) const MAGIC: &[u8] = b"\x93NUMPY";
 
-/// A file with one array, which must be the state.
+/// Reads a file with one array, which must be the state.
 pub(crate) fn read(input: &Input<'_>, progress: &mut dyn FnMut(u64)) -> Result<RawRecordings, ReadError> {
     let mut file = std::io::BufReader::new(input.open()?);
     let header = Header::read(&mut file, &input.name)?;
@@ -58,7 +58,7 @@ impl Header {
         }
     }
 
-    /// The numbers, of which at most `bytes` bytes are there.
+    /// Reads the numbers from a source of at most `bytes` bytes.
     pub(crate) fn data(
         &self,
         from: &mut dyn Read,

@@ -1,4 +1,4 @@
-//! NumPy arrays with names: a zip archive of .npy files.
+//! Named NumPy arrays: a zip archive of .npy files.
 
 use std::io::Read;
 
@@ -12,7 +12,7 @@ use crate::input::{Input, damaged};
 use crate::raw::RawRecordings;
 use crate::{Fault, ReadError};
 
-/// Most arrays of an archive.
+/// Maximum number of arrays in an archive.
 const MOST_ENTRIES: usize = 100_000;
 
 struct Entry {
@@ -62,7 +62,7 @@ pub(crate) fn read(input: &Input<'_>, progress: &mut dyn FnMut(u64)) -> Result<R
             let header = Header::read(&mut reader, &place)?;
             let left = entry.wayfinder.uncompressed_size_hint().saturating_sub(header.len);
             let data = header.data(&mut reader, left, &place, input)?;
-            // The check sum is compared at the end.
+            // The checksum is compared at the end.
             match std::io::copy(&mut reader.take(1 << 20), &mut std::io::sink()) {
                 Ok(_) => Ok(data),
                 Err(error) => Err(damaged(&error, &place)),
@@ -75,7 +75,7 @@ fn place(file: &str, entry: &Entry) -> String {
     format!("{file}, array '{}'", entry.name)
 }
 
-/// Hands the entry's decompressed and checked bytes to `use_it`.
+/// Passes the entry's decompressed and checked bytes to `use_it`.
 fn opened<T>(
     archive: &ZipArchive<FileReader>,
     entry: &Entry,

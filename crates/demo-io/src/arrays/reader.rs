@@ -1,4 +1,4 @@
-//! Arrays whose roles are known: the state among them, its times and its labels.
+//! Reads arrays whose roles are known: the state, its times and its labels.
 
 use std::ops::Range;
 
@@ -19,15 +19,15 @@ use motion::{Channel, Finding, Labels};
 #[derive(Debug, Default)]
 pub(crate) struct ReadState {
     pub(crate) stack: Stack,
-    /// As many as positions, or none.
+    /// As many as positions, or empty.
     pub(crate) velocities: Vec<f64>,
     pub(crate) channels: Vec<Channel>,
-    /// One a sample, with the name of their column, if a column holds them.
+    /// One per sample, with the name of its column, if a column holds stamps.
     pub(crate) stamps: Option<(Vec<f64>, String)>,
     /// Columns without a role.
     pub(crate) unused: Vec<String>,
     pub(crate) unknown: Unknown,
-    /// Channels that the user takes as context.
+    /// Channels that the user selects as context.
     pub(crate) context: Vec<String>,
 }
 
@@ -36,12 +36,12 @@ pub(crate) struct ArrayReader<'a> {
     pub(crate) input: &'a Input<'a>,
     /// All arrays of the file.
     pub(crate) described: &'a [ArraySpec],
-    /// None if all arrays of the file belong together.
+    /// `None` if all arrays of the file belong together.
     pub(crate) demo: Option<&'a Demo>,
     /// The arrays to which `fields` refers: those of the file, or of its first demonstration.
     pub(crate) arrays: &'a [ArraySpec],
     pub(crate) fields: &'a Fields,
-    /// Whether channels are called after their array, `robot0_joint_pos_0`, or counted, `x0`.
+    /// Whether channels are named after their array, `robot0_joint_pos_0`, or counted, `x0`.
     pub(crate) named_by_array: bool,
 }
 
@@ -72,7 +72,7 @@ impl ArrayReader<'_> {
         load(self.index(field)?)
     }
 
-    /// The state, and its velocities, sample after sample, or nothing where there are none.
+    /// The state and its velocities, sample after sample; velocities are empty if there are none.
     pub(crate) fn state(&self, load: &mut Load<'_>) -> Result<ReadState, ReadError> {
         let (stack, velocities) = self.state_and_velocities(load)?;
         let place = self.place();
@@ -101,7 +101,7 @@ impl ArrayReader<'_> {
         Ok(state)
     }
 
-    /// What the user names within the block of channels `names`: of arrays all channels.
+    /// The user's patterns for the block of channels `names`. A pattern of an array stands for all its channels.
     fn asked(&self, names: &[String]) -> Result<Asked, ReadError> {
         let Within { state, velocity, context, time, ignore } = &self.fields.within;
         let mut ranges: Vec<(usize, Range<usize>)> = Vec::new();
@@ -147,13 +147,13 @@ impl ArrayReader<'_> {
         Err(ReadError::Lengths(Fault::new(what, self.place(), remedy)))
     }
 
-    /// Arrays side by side, channel after channel.
+    /// Joins arrays side by side, channel after channel.
     fn joined(&self, fields: &[usize], load: &mut Load<'_>) -> Result<Stack, ReadError> {
         let place = self.place();
         let mut joined: Option<Stack> = None;
         for &field in fields {
             let array = self.spec(field)?;
-            // What would be refused is refused before it is read.
+            // Check before reading, to refuse early.
             let (episodes, ..) = dimensions(&array, self.input, &place)?;
             let fits = self.demo.is_none() || episodes == 1;
             let Some(numbers) = (if fits { self.load(field, load)?.numbers() } else { None }) else {
@@ -169,7 +169,7 @@ impl ArrayReader<'_> {
         joined.ok_or_else(|| no_column::<&str>("state", &[], &place))
     }
 
-    /// A value for each sample, as many as one of `counts`.
+    /// A value for each sample; their number must be one of `counts`.
     pub(crate) fn by_sample(&self, field: usize, counts: &[usize], load: &mut Load<'_>) -> Result<Data, ReadError> {
         let values = self.load(field, load)?;
         if counts.contains(&values.len()) {
@@ -178,7 +178,7 @@ impl ArrayReader<'_> {
         Err(lengths(&format!("array '{}'", self.arrays[field].name), counts[0], values.len(), &self.place()))
     }
 
-    /// Seconds between samples, from the first array of steps or rates with a number of values that `fits`.
+    /// Seconds between samples, from the first array of steps or rates whose number of values `fits`.
     pub(crate) fn steps(
         &self,
         fits: impl Fn(usize) -> bool,
@@ -200,7 +200,7 @@ impl ArrayReader<'_> {
         Ok(None)
     }
 
-    /// A label of each of `count` episodes, where the array has as many.
+    /// A label for each of `count` episodes, if the array has as many.
     pub(crate) fn labels(
         &self,
         field: Option<usize>,
@@ -213,8 +213,8 @@ impl ArrayReader<'_> {
         Ok((data.len() == count).then(|| (0..count).map(|at| data.label(at)).collect()))
     }
 
-    /// Names of the constraints of each episode, whose samples are given, `all` in sum: where the array has a name an episode, or one a
-    /// sample. Another number is refused if the user named the array.
+    /// Names of the constraints of each episode. The episodes' samples are given, `all` is their total number. The array has one name
+    /// per episode or one per sample. Any other number is an error if the user named the array.
     pub(crate) fn constraints(
         &self,
         episodes: &[&[usize]],
@@ -241,7 +241,7 @@ impl ArrayReader<'_> {
         }
     }
 
-    /// The n channels of the state and of what is beside it.
+    /// The n channels of the state and of the arrays beside it.
     fn channels(&self, n: usize, load: &mut Load<'_>) -> Result<Vec<Channel>, ReadError> {
         let mut texts = |field: Option<usize>| -> Result<Option<Vec<String>>, ReadError> {
             let Some(field) = field else { return Ok(None) };
@@ -259,7 +259,7 @@ impl ArrayReader<'_> {
         Ok(names.into_iter().zip(units).map(channel).collect())
     }
 
-    /// Array after array, counted through where an earlier one has the same names.
+    /// Channel names made array after array, with continued numbers where an earlier array has the same names.
     fn made_names(&self) -> Result<Vec<String>, ReadError> {
         let mut names: Vec<String> = Vec::new();
         let named_by_array =
@@ -276,7 +276,7 @@ impl ArrayReader<'_> {
         Ok(names)
     }
 
-    /// Arrays that are coarse, and those that were not used.
+    /// Findings on coarse arrays and on unused ones.
     pub(crate) fn findings(&self, unused_columns: &[String]) -> Vec<Finding> {
         let coarse = self.fields.state.iter().filter_map(|&field| self.arrays[field].coarse(&self.input.name));
         let not_used = self

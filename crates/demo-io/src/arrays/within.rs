@@ -1,10 +1,10 @@
-//! Columns within arrays, as the user names them: `x0` of the only array, `states_1` or `states_1-8` of one by name.
+//! Columns within arrays, by the user's names: `x0` of the only array, `states_1` or `states_1-8` of a named one.
 
 use crate::ReadOptions;
 use crate::arrays::array::ArraySpec;
 use crate::names::selection::{self, select};
 
-/// A part of what a flag names.
+/// One element of a flag's selection.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum Part {
     /// A whole array, by its index.
@@ -22,7 +22,7 @@ impl Part {
     }
 }
 
-/// What flags name within arrays, by role. Empty for a role whose flag names arrays only.
+/// The flags' selections within arrays, by role. Empty for a role whose flag names whole arrays only.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub(crate) struct Within {
     pub(crate) state: Vec<Part>,
@@ -50,7 +50,7 @@ impl Within {
         within
     }
 
-    /// Whether the flags name whole arrays of the state only.
+    /// Whether the flags select nothing but whole arrays of the state.
     pub(crate) fn is_empty(&self) -> bool {
         let Within { state, velocity, context, time, ignore } = self;
         state.iter().all(|part| part.columns().is_none())
@@ -60,7 +60,7 @@ impl Within {
             && ignore.is_empty()
     }
 
-    /// Whether a pattern calls columns after their array.
+    /// Whether a pattern names columns after their array.
     pub(crate) fn names_arrays(&self, described: &[ArraySpec]) -> bool {
         let Within { state, velocity, context, time, ignore } = self;
         let parts = [state, velocity, context].into_iter().flatten().filter_map(Part::columns);
@@ -68,7 +68,7 @@ impl Within {
         patterns.any(|pattern| owner(pattern, described).is_some())
     }
 
-    /// Adds the arrays whose columns the user takes as state.
+    /// Adds the arrays in which the user selects columns as state.
     pub(crate) fn take_arrays(&self, state: &mut Vec<usize>, described: &[ArraySpec]) {
         for index in self.state.iter().filter_map(Part::columns).filter_map(|pattern| owner(pattern, described)) {
             if !state.contains(&index) {
@@ -77,7 +77,7 @@ impl Within {
         }
     }
 
-    /// Arrays other than the state of which something is named.
+    /// Arrays other than the state in which something is selected.
     pub(crate) fn beside(&self, state: &[usize], described: &[ArraySpec]) -> Vec<usize> {
         let mut beside: Vec<usize> = Vec::new();
         let of = |part: &Part| match part {
@@ -94,7 +94,8 @@ impl Within {
     }
 }
 
-/// What patterns name: arrays, else columns. A number is that of a column where one array alone has several.
+/// Resolves patterns to arrays, else to columns. A number is a column's if there is only one array with several
+/// columns.
 pub(crate) fn parts(patterns: &[String], described: &[ArraySpec]) -> Vec<Part> {
     let names: Vec<&str> = described.iter().map(|array| &array.name[..]).collect();
     let alone = described.iter().filter(|array| array.shape.len() > 1 && array.is_number()).count() == 1;
@@ -110,7 +111,7 @@ pub(crate) fn parts(patterns: &[String], described: &[ArraySpec]) -> Vec<Part> {
     found
 }
 
-/// The arrays among parts, none twice.
+/// The arrays among parts, without duplicates.
 pub(crate) fn arrays(parts: &[Part]) -> Vec<usize> {
     let mut arrays: Vec<usize> = Vec::new();
     for part in parts {
@@ -122,7 +123,7 @@ pub(crate) fn arrays(parts: &[Part]) -> Vec<usize> {
     arrays
 }
 
-/// The array that a pattern of columns begins with: `states` of `states_1-8`.
+/// The array whose name begins a pattern of columns: `states` of `states_1-8`.
 fn owner(pattern: &str, described: &[ArraySpec]) -> Option<usize> {
     let is_column =
         |rest: &str| !rest.is_empty() && rest.bytes().all(|letter| letter.is_ascii_digit() || b"-*?".contains(&letter));

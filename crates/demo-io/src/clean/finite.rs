@@ -1,4 +1,4 @@
-//! Numbers that are missing: refused, left out with their sample, or interpolated.
+//! Missing numbers: an error, or dropped with their sample, or interpolated.
 
 use crate::raw::RawEpisode;
 use crate::{Fault, Nan, ReadError};
@@ -9,7 +9,7 @@ const LONGEST_FILL: usize = 3;
 const REFUSED: &str = "--nan drop (leaves the sample out) or --nan fill (interpolates gaps of up to 3 samples)";
 const UNFILLED: &str = "--nan drop (leaves the sample out); --nan fill interpolates at most 3 in a row, neither stamps nor the ends of an episode";
 
-/// Returns how many samples were not finite.
+/// Applies `nan`, and returns the number of samples that were not finite.
 pub(super) fn make_finite(draft: &mut RawEpisode, names: &[String], word: &str, nan: Nan) -> Result<usize, ReadError> {
     let n = names.len();
     let bad: Vec<usize> = (0..draft.len()).filter(|&sample| !is_finite(draft, sample, n)).collect();
@@ -42,7 +42,7 @@ fn is_finite(draft: &RawEpisode, sample: usize, n: usize) -> bool {
         && (draft.velocities.is_empty() || draft.velocities[columns].iter().all(|value| value.is_finite()))
 }
 
-/// What of a sample is missing.
+/// Error: names the missing values of a sample.
 fn not_finite(draft: &RawEpisode, sample: usize, names: &[String], word: &str, remedy: &str) -> ReadError {
     let n = names.len();
     let here = |numbers: &[f64]| {
@@ -65,7 +65,7 @@ fn not_finite(draft: &RawEpisode, sample: usize, names: &[String], word: &str, r
     ))
 }
 
-/// Straight between the samples around a run, in time; only what is missing.
+/// Interpolates missing values linearly in time between the samples around a run.
 fn interpolate(draft: &mut RawEpisode, run: &[usize], before: usize, after: usize, n: usize) {
     let times = &draft.times;
     for numbers in [&mut draft.positions, &mut draft.velocities] {

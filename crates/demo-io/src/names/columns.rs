@@ -1,13 +1,13 @@
-//! Columns of a block of numbers by role, as the user names them.
+//! Selects the columns of a block of numbers by role, with the user's names.
 
 use crate::names::selection::{flags, select};
 use crate::rows::roles::{no_column, require_matching};
 use crate::{Fault, ReadError};
 
-/// Patterns of columns within a block, by role.
+/// The user's patterns for columns of a block, by role.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub(crate) struct Asked {
-    /// All that has no other role, if none is named.
+    /// If empty, all columns without another role.
     pub(crate) state: Vec<String>,
     pub(crate) velocity: Vec<String>,
     pub(crate) context: Vec<String>,
@@ -19,11 +19,11 @@ pub(crate) struct Asked {
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub(crate) struct Chosen {
     pub(crate) state: Vec<usize>,
-    /// As many as the state, or none.
+    /// As many as the state, or empty.
     velocity: Vec<usize>,
     pub(crate) context: Vec<usize>,
     pub(crate) time: Option<usize>,
-    /// Of all columns.
+    /// Number of all columns.
     columns: usize,
 }
 
@@ -34,7 +34,7 @@ impl Asked {
 }
 
 impl Chosen {
-    /// Of the columns `names`; `beside` are other names that the user may give, for messages.
+    /// Selects among the columns `names`. Messages also list `beside`, other names that the user may give.
     pub(crate) fn of(names: &[String], asked: &Asked, beside: &[&str], place: &str) -> Result<Self, ReadError> {
         let found = |patterns: &[String]| {
             select(patterns, names).map_err(|pattern| {
@@ -61,7 +61,7 @@ impl Chosen {
         Ok(Chosen { state, velocity, context, time: time.first().copied(), columns: names.len() })
     }
 
-    /// State and context.
+    /// Indices of state and context.
     pub(crate) fn channels(&self) -> impl Iterator<Item = usize> + '_ {
         self.state.iter().chain(&self.context).copied()
     }
@@ -79,8 +79,8 @@ impl Chosen {
         samples.flat_map(|sample| self.channels().map(|column| sample[column])).collect()
     }
 
-    /// Their velocities: the columns that are named as such, else those of `recorded`, which has the first columns of `block`; nothing
-    /// where there are none. A context has velocity 0.
+    /// The velocities of the channels: the columns named as velocities, else those of `recorded`, which has the first columns of
+    /// `block`. Empty if there are none. A context has velocity 0.
     pub(crate) fn velocities(&self, block: &[f64], recorded: &[f64], place: &str) -> Result<Vec<f64>, ReadError> {
         let samples = block.len() / self.columns.max(1);
         let (from, width, columns) = match (&self.velocity[..], recorded.len().checked_div(samples).unwrap_or(0)) {

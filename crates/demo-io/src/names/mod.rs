@@ -1,4 +1,4 @@
-//! Names: their order, and patterns of them.
+//! Names: their order, and patterns that match them.
 
 pub(crate) mod columns;
 pub(crate) mod natural;

@@ -2,7 +2,7 @@
 
 use std::cmp::Ordering;
 
-/// Runs of digits are compared as numbers, everything else letter by letter.
+/// Compares runs of digits as numbers, everything else character by character.
 pub(crate) fn compare(a: &str, b: &str) -> Ordering {
     let (mut left, mut right) = (a, b);
     while let (Some(x), Some(y)) = (left.chars().next(), right.chars().next()) {

@@ -1,10 +1,11 @@
 //! Patterns of names: `x`, `q*`, `q2-8`, `2-8`.
 
-/// The indices that patterns name, in the order of the patterns and, within one, of the names; none twice.
+/// The indices that patterns select, in the order of the patterns and, within a pattern, of the names; without
+/// duplicates.
 ///
 /// # Errors
 ///
-/// The first pattern that names nothing.
+/// The first pattern that matches nothing.
 pub(crate) fn select<S: AsRef<str>>(patterns: &[String], names: &[S]) -> Result<Vec<usize>, String> {
     let mut chosen = Vec::new();
     for pattern in patterns.iter().flat_map(|pattern| split(pattern, names)) {
@@ -21,7 +22,7 @@ pub(crate) fn select<S: AsRef<str>>(patterns: &[String], names: &[S]) -> Result<
     Ok(chosen)
 }
 
-/// As [`select`], but patterns that name nothing are no fault; one flag an index.
+/// As [`select`], but patterns may match nothing; returns a flag for each name.
 pub(crate) fn flags<S: AsRef<str>>(patterns: &[String], names: &[S]) -> Vec<bool> {
     let mut flags = vec![false; names.len()];
     for pattern in patterns.iter().flat_map(|pattern| split(pattern, names)) {
@@ -32,7 +33,7 @@ pub(crate) fn flags<S: AsRef<str>>(patterns: &[String], names: &[S]) -> Vec<bool
     flags
 }
 
-/// The parts between commas, unless the whole is a name.
+/// Splits a pattern at commas, unless the whole is a name.
 fn split<'a, S: AsRef<str>>(pattern: &'a str, names: &[S]) -> Vec<&'a str> {
     if names.iter().any(|name| name.as_ref() == pattern) {
         return vec![pattern];
@@ -65,13 +66,13 @@ fn matching<S: AsRef<str>>(pattern: &str, names: &[S]) -> Vec<usize> {
     }
 }
 
-/// `2` or `2-8`.
+/// Parses `2` or `2-8`.
 fn range(pattern: &str) -> Option<(usize, usize)> {
     let (first, last) = pattern.split_once('-').unwrap_or((pattern, pattern));
     Some((first.trim().parse().ok()?, last.trim().parse().ok()?))
 }
 
-/// `q2-8`: the names `q2` to `q8`.
+/// Parses `q2-8`: the names `q2` to `q8`.
 fn numbered_range(pattern: &str) -> Option<(&str, std::ops::RangeInclusive<usize>)> {
     let (first, last) = pattern.rsplit_once('-')?;
     let stem = first.trim_end_matches(|letter: char| letter.is_ascii_digit());
@@ -79,12 +80,12 @@ fn numbered_range(pattern: &str) -> Option<(&str, std::ops::RangeInclusive<usize
     (!stem.is_empty()).then_some((stem, numbers))
 }
 
-/// Whether a pattern is a number or a range of numbers, as `2` or `2-8`.
+/// Whether a pattern is a number or a range of numbers, such as `2` or `2-8`.
 pub(crate) fn is_number(pattern: &str) -> bool {
     range(pattern).is_some()
 }
 
-/// The parts of patterns, between commas.
+/// The elements of patterns, split at commas.
 pub(crate) fn parts<'a, S: AsRef<str>>(
     patterns: &'a [String],
     names: &'a [S],
@@ -92,12 +93,12 @@ pub(crate) fn parts<'a, S: AsRef<str>>(
     patterns.iter().flat_map(move |pattern| split(pattern, names))
 }
 
-/// The parts of patterns that name nothing.
+/// The elements of patterns that match nothing.
 pub(crate) fn unmatched<S: AsRef<str>>(patterns: &[String], names: &[S]) -> Vec<String> {
     parts(patterns, names).filter(|part| matching(part, names).is_empty()).map(str::to_owned).collect()
 }
 
-/// `*` stands for any letters, `?` for one; nothing else is special, since names hold brackets.
+/// `*` matches any characters, `?` matches one. Nothing else is special, because names contain brackets.
 pub(crate) fn glob(pattern: &str, name: &str) -> bool {
     let (pattern, name): (Vec<char>, Vec<char>) = (pattern.chars().collect(), name.chars().collect());
     let (mut p, mut n) = (0, 0);

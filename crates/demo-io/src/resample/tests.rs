@@ -88,7 +88,7 @@ fn rates_that_make_no_movement_are_refused() {
     assert!(matches!(resampled(&made, 0.9), Err(ResampleError::Short { .. })));
     assert!(matches!(resampled(&made, 1e12), Err(ResampleError::Many { .. })));
     assert_eq!(resampled(&made, 1.0).unwrap().episodes[0].times.stamps()[..], [0.0, 1.0]);
-    // 30 steps of a tenth of a second, their stamps rounded.
+    // 30 steps of a tenth of a second with rounded stamps.
     let tenths = recordings((0..=30).map(|i| f64::from(i) * 0.1).collect(), |t| t);
     assert_eq!(resampled(&tenths, 10.0).unwrap().episodes[0].times.len(), 31);
 }

@@ -1,4 +1,4 @@
-//! Text with separators: CSV, TSV, columns between blanks.
+//! Text with separators: CSV, TSV, columns separated by blanks.
 
 mod beginning;
 mod cut;
@@ -19,7 +19,7 @@ use crate::rows::piece::Span;
 use crate::rows::table::Row as _;
 use crate::{Fault, ReadError, SamplesAre};
 
-/// All records, or those of a part.
+/// Reads all records, or those of a part.
 pub(crate) fn read(
     input: &Input<'_>,
     part: Option<&Span>,
@@ -56,7 +56,7 @@ pub(crate) fn read(
     Ok(drafts)
 }
 
-/// Text without names that holds a channel a line: an array whose samples are columns.
+/// Reads text without names in which each line holds a channel: an array whose samples are columns.
 fn transposed(input: &Input<'_>, beginning: Beginning<'_>) -> Result<RawRecordings, ReadError> {
     let Beginning { dialect, mut records, head, .. } = beginning;
     let mut numbers = Vec::new();
@@ -80,7 +80,7 @@ fn transposed(input: &Input<'_>, beginning: Beginning<'_>) -> Result<RawRecordin
         lines += 1;
     }
     let mut samples = records.fields;
-    // A separator at the end of each line.
+    // A separator ends each line.
     if samples > 1 && numbers.chunks_exact(samples).all(|line| line[samples - 1].is_nan()) {
         numbers = numbers.chunks_exact(samples).flat_map(|line| &line[..samples - 1]).copied().collect();
         samples -= 1;

@@ -1,4 +1,4 @@
-//! Rows that are documents, a document a sample.
+//! Rows that are documents, one per sample.
 
 use std::collections::HashMap;
 
@@ -9,7 +9,7 @@ use crate::rows::roles::{Column, HEAD_ROWS, content};
 use crate::rows::table::{Row as _, Table};
 use crate::{Fault, ReadError};
 
-/// Rows of documents whose columns are the paths of the first.
+/// Rows of documents. The paths of the first document are the columns.
 pub(crate) struct Documents<'a> {
     input: &'a Input<'a>,
     word: &'static str,
@@ -47,7 +47,7 @@ impl<'a> Documents<'a> {
         let mut unknown = None;
         let mut next = 0;
         document.leaves(&mut String::new(), &mut |path, leaf| {
-            // Mostly in the order of the first.
+            // The keys are mostly in the order of the first document.
             let expected = Some(next).filter(|&next| self.names.get(next).is_some_and(|name| name == path));
             match expected.or_else(|| self.index.get(path).copied()) {
                 Some(column) => {
@@ -93,7 +93,7 @@ impl<'a> Documents<'a> {
         Ok(row)
     }
 
-    /// Makes the table, by the rows that came first.
+    /// Creates the table from the first rows.
     fn begin(&self) -> Result<Table, ReadError> {
         let column = |(at, name): (usize, &String)| Column {
             name: name.clone(),

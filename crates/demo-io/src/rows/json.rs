@@ -7,7 +7,7 @@ use serde::de::{Deserialize, Deserializer, MapAccess, SeqAccess, Visitor};
 use crate::rows::stamps::{Stamp, TicksPerSecond};
 use crate::rows::table::Row;
 
-/// A document whose keys stay in the order of the text.
+/// A document whose keys keep the order of the text.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Json {
     Null,
@@ -18,11 +18,11 @@ pub(crate) enum Json {
     Map(Vec<(String, Json)>),
 }
 
-/// A document flattens to at most so many values.
+/// Maximum number of values that a document flattens to.
 pub(crate) const MOST_LEAVES: usize = 65_536;
 
 impl Json {
-    /// Calls `visit` with every value and its path: `vel.0`. An empty list or object has none.
+    /// Calls `visit` with every value and its path: `vel.0`. An empty list or object has no values.
     pub(crate) fn leaves<'a>(&'a self, path: &mut String, visit: &mut dyn FnMut(&str, &'a Json)) {
         let mut below = |name: &str, value: &'a Json, path: &mut String| {
             let before = path.len();
@@ -63,7 +63,7 @@ impl Json {
         }
     }
 
-    /// With the unit, if the text decides it.
+    /// The stamp, with its unit if the text determines it.
     pub(crate) fn stamp(&self) -> Option<(Stamp, Option<TicksPerSecond>)> {
         match self {
             Json::Whole(value) => Some((Stamp::whole(*value), None)),
@@ -93,7 +93,7 @@ impl fmt::Display for Json {
     }
 }
 
-/// One row, by column.
+/// One row; the index is the column.
 impl Row for Vec<Json> {
     fn number(&self, column: usize) -> Result<f64, String> {
         self[column].number().ok_or_else(|| self[column].to_string())
@@ -106,7 +106,7 @@ impl Row for Vec<Json> {
     fn label(&self, column: usize, label: &mut String) {
         use fmt::Write as _;
         label.clear();
-        // Writing to a String does not fail.
+        // Writing to a String cannot fail.
         let _ = write!(label, "{}", self[column]);
     }
 }

@@ -1,5 +1,5 @@
-//! JSON lines: a line an episode, as [`crate::write`] makes them or with lists by name, or a line a sample; or one list of either, or one
-//! object that holds episodes, over any lines.
+//! JSON lines: an episode per line, either in [`crate::write`]'s form or as named lists, or a sample per line. Also one list of these, or
+//! one object that holds episodes, over any number of lines.
 
 mod cut;
 mod entry_arrays;
@@ -19,7 +19,7 @@ use crate::rows::json::Json;
 use crate::rows::piece::Span;
 use crate::{Fault, ReadError};
 
-/// All lines, or those of a part, which hold an episode each.
+/// Reads all lines, or those of a part with an episode in each.
 pub(crate) fn read(
     input: &Input<'_>,
     part: Option<&Span>,
@@ -71,7 +71,8 @@ pub(crate) fn read(
     }
 }
 
-/// The entries of a list that is a whole file: objects as they are, and lists of samples as episodes, one of each or one in all.
+/// The entries of a list that is the whole file. Objects stay as they are; lists of samples become episodes, one for each list or one for
+/// all samples.
 fn episodes_of(entries: Vec<Json>) -> Vec<Json> {
     let list_of_lists =
         |value: &Json| value.list().is_some_and(|rows| !rows.is_empty() && rows.iter().all(|row| row.list().is_some()));
@@ -87,11 +88,11 @@ fn episodes_of(entries: Vec<Json>) -> Vec<Json> {
     }
 }
 
-/// What a line is, judged by the first.
+/// The kind of the lines, determined by the first.
 enum Reader<'a> {
     Episodes(EpisodeLines<'a>),
     Arrays(EntryArrays<'a>),
-    /// Objects of columns, of which each is an episode if there are several.
+    /// Objects of columns. If there are several, each is an episode.
     Columns {
         rows: Box<Documents<'a>>,
         alone: bool,

@@ -1,5 +1,5 @@
-//! A folder as LeRobot writes it: `meta/info.json` and Parquet files in `data/`. The files on disk and their column
-//! `episode_index` count, not the version that the folder states.
+//! A folder in LeRobot's layout: `meta/info.json` and Parquet files in `data/`. The files on disk and their column
+//! `episode_index` are authoritative, not the version that the folder states.
 
 use std::collections::{BTreeSet, HashMap};
 use std::fs;
@@ -14,7 +14,7 @@ use crate::rows::json::Json;
 use crate::rows::parquet::{self, Described, STATE};
 use crate::{Fault, ReadError, ReadOptions};
 
-/// Bytes of a file of `meta/`, at most.
+/// Maximum size in bytes of a file of `meta/`.
 const META: u64 = 256 << 20;
 
 pub(crate) fn read(
@@ -56,7 +56,7 @@ impl Info {
         Ok(Self { json, period })
     }
 
-    /// Names of the elements of each feature: a list, or lists by what they belong to, or nothing.
+    /// Names of the elements of each feature: a list, several named lists, or none.
     fn elements(&self) -> HashMap<String, Vec<String>> {
         let Some(Json::Map(features)) = self.json.get("features") else { return HashMap::new() };
         let names = |feature: &Json| -> Option<Vec<String>> {
@@ -69,12 +69,12 @@ impl Info {
             let length = feature.get("shape").and_then(Json::list).and_then(|shape| shape.first()?.number());
             names.filter(|names| length == Some(names.len() as f64))
         };
-        // Goals have the same names as positions; only one may have them.
+        // Goals have the same names as positions, so that only the state gets them.
         let state = features.iter().filter(|(feature, _)| feature == STATE);
         state.filter_map(|(feature, described)| Some((feature.clone(), names(described)?))).collect()
     }
 
-    /// Episodes that `meta/` lists must be there.
+    /// Refuses a folder that lacks episodes that `meta/` lists.
     fn refuse_missing(&self, path: &Path, name: &str, drafts: &RawRecordings) -> Result<(), ReadError> {
         let found: BTreeSet<&str> = drafts.episodes.iter().map(|draft| &draft.name[..]).collect();
         let listed = read_bytes(&path.join("meta/episodes.jsonl"), META).unwrap_or_default();
@@ -97,7 +97,7 @@ impl Info {
         Err(ReadError::MissingFile(Fault::new(what, place, remedy)))
     }
 
-    /// Where an episode should stand; the pattern itself if files hold several.
+    /// The expected file of an episode; the pattern itself if files hold several.
     fn file_of(&self, episode: u64) -> String {
         let pattern = self.json.get("data_path").and_then(Json::text).unwrap_or("data/");
         let size = self.json.get("chunks_size").and_then(Json::number).filter(|&size| size >= 1.0).unwrap_or(1000.0);
@@ -108,7 +108,7 @@ impl Info {
     }
 }
 
-/// The Parquet files in a folder and in its folders.
+/// The Parquet files in a folder and its subfolders.
 fn parquet_files(folder: &Path, name: &str) -> Result<Vec<PathBuf>, ReadError> {
     let mut files = Vec::new();
     for entry in fs::read_dir(folder).map_err(|error| unreadable(&error, &format!("{name}, data")))? {

@@ -1,4 +1,4 @@
-//! Bags of ROS 2 in MCAP: one topic becomes one recording.
+//! ROS 2 bags in MCAP: one topic becomes one recording.
 
 mod episodes;
 pub(crate) mod format;
@@ -18,10 +18,10 @@ use crate::raw::{RawRecordings, remark};
 use crate::rows::roles::shortened;
 use crate::{Fault, ReadError};
 
-/// Name of the metadata record in which [`crate::write`] stores what messages cannot hold.
+/// Name of the metadata record in which [`crate::write`] stores information that messages cannot hold.
 pub(crate) const METADATA: &str = "demo-io";
 
-/// A bag has hardly more topics than that.
+/// Maximum number of topics of a bag.
 const MOST_TOPICS: usize = 4096;
 
 pub(crate) fn read(input: &Input<'_>, progress: &mut dyn FnMut(u64)) -> Result<RawRecordings, ReadError> {
@@ -42,7 +42,7 @@ pub(crate) fn read(input: &Input<'_>, progress: &mut dyn FnMut(u64)) -> Result<R
     Ok(drafts)
 }
 
-/// What is known of a bag while it is read.
+/// State of reading a bag.
 struct Bag<'a> {
     input: &'a Input<'a>,
     schemas: HashMap<u16, String>,

@@ -1,4 +1,4 @@
-//! Files of rows: a row or a message a sample, with named columns.
+//! Files of rows: one row or message per sample, with named columns.
 
 pub(crate) mod delimited;
 mod documents;

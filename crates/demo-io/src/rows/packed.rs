@@ -1,4 +1,4 @@
-//! Values one after another in bytes: messages of ROS 2, in Common Data Representation, and the records of a bag.
+//! Values packed in bytes: ROS 2 messages, in Common Data Representation, and the records of a bag.
 
 use std::collections::BTreeMap;
 
@@ -9,23 +9,23 @@ pub(crate) struct Reader<'a> {
     bytes: &'a [u8],
     at: usize,
     big_endian: bool,
-    /// Largest alignment of a value, which is else its size.
+    /// Largest alignment of a value; smaller values are aligned to their size.
     widest: usize,
 }
 
-/// The bytes end before what they announce, or a text is none.
+/// The bytes end early, or a text is not valid.
 #[derive(Debug, PartialEq, Eq, Error)]
 #[error("a record does not hold what its kind asks for")]
 pub(crate) struct Misfit;
 
 impl<'a> Reader<'a> {
-    /// A record of a bag: little-endian, and not aligned.
+    /// Reads a record of a bag: little-endian, without alignment.
     pub(crate) fn of_record(bytes: &'a [u8]) -> Self {
         Self { bytes, at: 0, big_endian: false, widest: 1 }
     }
 
-    /// A message of ROS 2. Its first four bytes say the byte order and the version, of which the second aligns to 4 bytes at
-    /// most.
+    /// Reads a ROS 2 message. Its first four bytes state the byte order and the version; version 2 aligns to at most 4
+    /// bytes.
     pub(crate) fn of_message(message: &'a [u8]) -> Result<Self, Misfit> {
         let (head, bytes) = message.split_at_checked(4).ok_or(Misfit)?;
         Ok(Self { bytes, at: 0, big_endian: head[1] % 2 == 0, widest: if head[1] >= 6 { 4 } else { 8 } })
@@ -63,7 +63,7 @@ impl<'a> Reader<'a> {
         Ok(f64::from_le_bytes(self.take()?))
     }
 
-    /// A number of elements of at least `size` bytes, which are there.
+    /// Reads a number of elements of at least `size` bytes, and checks that the bytes exist.
     fn count(&mut self, size: usize) -> Result<usize, Misfit> {
         let count = self.u32()? as usize;
         let there = self.bytes.len().saturating_sub(self.at);
@@ -77,12 +77,12 @@ impl<'a> Reader<'a> {
         Ok(block)
     }
 
-    /// A text of a record.
+    /// Reads a text of a record.
     pub(crate) fn text(&mut self) -> Result<&'a str, Misfit> {
         std::str::from_utf8(self.block()?).map_err(|_| Misfit)
     }
 
-    /// A text of a message, without its closing zero.
+    /// Reads a text of a message, without its terminating zero.
     pub(crate) fn closed_text(&mut self) -> Result<&'a str, Misfit> {
         let text = self.block()?;
         std::str::from_utf8(text.strip_suffix(&[0]).unwrap_or(text)).map_err(|_| Misfit)
@@ -105,7 +105,7 @@ impl<'a> Reader<'a> {
         Ok(map)
     }
 
-    /// What was not read.
+    /// The unread bytes.
     pub(crate) fn rest(&self) -> &'a [u8] {
         &self.bytes[self.at..]
     }
@@ -146,7 +146,7 @@ impl Writer {
         numbers.for_each(|&number| self.f64(number));
     }
 
-    /// With the four bytes that say little-endian.
+    /// The bytes of the message, after the four that state little-endian order.
     pub(crate) fn message(self) -> Vec<u8> {
         [&[0, 1, 0, 0], &self.bytes[..]].concat()
     }

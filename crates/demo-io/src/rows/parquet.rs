@@ -1,4 +1,4 @@
-//! Parquet: columns by name as in CSV; a column of lists of equal length is as many states.
+//! Parquet: named columns as in CSV; a column of lists of equal length yields as many states.
 
 mod descriptions;
 mod failure;
@@ -21,7 +21,7 @@ use crate::rows::table::{Row, Table};
 use crate::{Fault, ReadError, ReadOptions};
 use motion::Finding;
 
-/// What another file says of the columns.
+/// Properties of columns that another file describes.
 #[derive(Debug, Default)]
 pub(crate) struct Described {
     /// Names of a list's elements, by the column's name.
@@ -30,7 +30,7 @@ pub(crate) struct Described {
     pub(crate) period: Option<f64>,
 }
 
-/// The column of LeRobot and of what imitates it.
+/// The state's column in LeRobot's format and its imitations.
 pub(crate) const STATE: &str = "observation.state";
 
 pub(crate) fn read(
@@ -80,10 +80,10 @@ pub(crate) fn read(
     Ok(drafts)
 }
 
-/// Leaves of the schema, and the columns that they become.
+/// Leaves of the schema, and the columns into which they expand.
 struct Columns {
     leaves: Vec<Leaf>,
-    /// The first column of each.
+    /// The first column of each leaf.
     firsts: Vec<usize>,
     /// The leaf of each column.
     owners: Vec<usize>,
@@ -118,7 +118,7 @@ impl Columns {
         (0..self.owners.len()).map(|column| Column { name: self.name(column), content: content(column) }).collect()
     }
 
-    /// The options with lists named by their elements.
+    /// The options, with patterns of lists replaced by their elements.
     fn options(&self, options: &ReadOptions, described: &Described, file: &str) -> Result<ReadOptions, ReadError> {
         let mut mine = options.clone();
         mine.dt = options.dt.or(described.period);
@@ -133,7 +133,7 @@ impl Columns {
             }
         }
         if mine.state.is_empty() {
-            // Goals are no positions.
+            // Actions are goals, not positions.
             mine.ignore.extend(
                 self.leaves
                     .iter()
@@ -148,7 +148,7 @@ impl Columns {
         self.leaves.iter().any(|leaf| leaf.name == name)
     }
 
-    /// Names of the columns of the leaves that a pattern names; the pattern itself if it names none.
+    /// Names of the columns of the leaves that match a pattern; the pattern itself if none matches.
     fn elements_of(&self, pattern: &str) -> Vec<String> {
         let names: Vec<&str> = self.leaves.iter().map(|leaf| &leaf.name[..]).collect();
         match select(&[pattern.to_owned()], &names) {
@@ -162,7 +162,7 @@ impl Columns {
         }
     }
 
-    /// As [`Self::elements_of`]; elements of the state may also go by the names that another file gives.
+    /// As [`Self::elements_of`], but elements of the state may also have the names that another file gives.
     fn elements(&self, patterns: &[String], described: &Described, file: &str) -> Result<Vec<String>, ReadError> {
         let mut columns = Vec::new();
         for pattern in patterns.iter().flat_map(|pattern| pattern.split(',')).map(str::trim) {
@@ -186,7 +186,7 @@ impl Columns {
     }
 }
 
-/// Gives channels the names that another file has for them.
+/// Renames channels to the names that another file gives.
 fn rename(drafts: &mut RawRecordings, described: &Described) {
     let given: HashMap<String, &String> = described
         .elements
@@ -200,7 +200,7 @@ fn rename(drafts: &mut RawRecordings, described: &Described) {
     }
 }
 
-/// Stamps next to a rate: they are not used, since single precision makes them uneven, but must agree with it.
+/// Stamps beside a rate. They must agree with the rate but are not used, because single precision makes them uneven.
 struct Stamps<'a> {
     period: f64,
     stamp: &'a Leaf,
@@ -223,7 +223,7 @@ impl Stamps<'_> {
         for row in 0..rows {
             let (Ok(stamp), Ok(frame)) = (stamps.number(row), frames.number(row)) else { continue };
             let off = (stamp - frame * self.period).abs();
-            // Single precision after an hour.
+            // The accuracy of single precision after an hour.
             if off > 1e-4 + stamp.abs() * 1e-7 {
                 let place = format!("{}, row {}", input.name, first + row as u64);
                 let what = format!("{place}: the stamp {stamp} s does not belong to frame {frame} at the rate in meta");
@@ -238,7 +238,7 @@ impl Stamps<'_> {
 /// A row of a row group.
 struct GroupRow<'a> {
     columns: &'a Columns,
-    /// None where a leaf is not used.
+    /// `None` for an unused leaf.
     data: &'a [Option<leaf::Values>],
     at: usize,
 }

@@ -1,4 +1,4 @@
-//! Files in pieces of whole movements.
+//! Pieces of files that consist of whole movements.
 
 use std::fs;
 use std::ops::Range;
@@ -10,51 +10,51 @@ use crate::input::name_of;
 use crate::regular_file::FileState;
 use crate::{Fault, ReadError};
 
-/// A file to read, or a part of one.
+/// A file, or a part of one, to read.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Piece {
-    /// Where the file is.
+    /// Path of the file.
     pub path: PathBuf,
-    /// Whether movements carry the name of the file, since it is one of several: `monday/3`.
+    /// Whether the names of movements contain that of the file, because it is one of several: `monday/3`.
     pub named_by_file: bool,
-    /// Which part; none if all of it.
+    /// The part; `None` for the whole file.
     pub span: Option<Span>,
 }
 
-/// Records of a text that are whole movements.
+/// Records of a text that form whole movements.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Span {
-    /// Which of the file's parts it is, counted from 0.
+    /// Number of the part within the file, counted from 0.
     pub number: usize,
-    /// Its bytes.
+    /// Its byte range.
     pub bytes: Range<u64>,
-    /// Where it begins, counted from 1.
+    /// Its first line, counted from 1.
     pub line: u64,
-    /// Movements before it.
+    /// Number of movements before it.
     pub movements: usize,
-    /// The file when it was cut.
+    /// State of the file when it was cut.
     pub of: FileState,
 }
 
 impl Piece {
-    /// All of a file or folder.
+    /// The whole of a file or folder.
     pub fn whole(path: impl Into<PathBuf>, named_by_file: bool) -> Piece {
         Piece { path: path.into(), named_by_file, span: None }
     }
 
-    /// Whether the file begins with it, so that one of its pieces does.
+    /// Whether the piece is the beginning of the file.
     pub fn is_first(&self) -> bool {
         self.span.as_ref().is_none_or(|span| span.number == 0)
     }
 
-    /// How many bytes it has: of a part, of a file, or of all files in a folder.
+    /// Size in bytes of a part, of a file, or of all files in a folder.
     pub fn bytes(&self) -> u64 {
         self.span.as_ref().map_or_else(|| bytes_of(&self.path), Span::size)
     }
 
-    /// What messages call it: the file without folders, and where a part begins.
+    /// Name in messages: the file without folders, and the first line of a part.
     pub fn name(&self) -> String {
         let name = name_of(&self.path);
         self.span.as_ref().map_or(name.clone(), |span| format!("{name} from line {}", span.line))
@@ -67,12 +67,12 @@ impl AsRef<Path> for Piece {
     }
 }
 
-/// How many bytes a file has, or all files in a folder; 0 if it cannot be read, which the reader complains of.
+/// Size in bytes of a file, or of all files in a folder; 0 if it cannot be read, which the reader will report.
 pub fn bytes_of(path: &Path) -> u64 {
     match fs::metadata(path) {
         Ok(found) if found.is_dir() => {
             let entries = fs::read_dir(path).into_iter().flatten().flatten();
-            // Links to folders may lead round in a circle.
+            // Links to folders may form a cycle.
             let is_link = |entry: &fs::DirEntry| entry.file_type().is_ok_and(|kind| kind.is_symlink());
             let inside = entries.filter(|entry| !is_link(entry) || entry.path().is_file());
             inside.map(|entry| bytes_of(&entry.path())).sum()
@@ -83,12 +83,12 @@ pub fn bytes_of(path: &Path) -> u64 {
 }
 
 impl Span {
-    /// How many bytes it has.
+    /// Size in bytes.
     pub fn size(&self) -> u64 {
         self.bytes.end.saturating_sub(self.bytes.start)
     }
 
-    /// Refuses a file that is no longer as it was when it was cut.
+    /// Refuses a file that has changed since it was cut.
     pub(crate) fn require_unchanged(&self, path: &Path) -> Result<(), ReadError> {
         if FileState::of(path).is_ok_and(|now| now == self.of) {
             return Ok(());
@@ -98,32 +98,32 @@ impl Span {
     }
 }
 
-/// Where a movement begins.
+/// The beginning of a movement.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Start {
     pub(crate) byte: u64,
     pub(crate) line: u64,
-    /// Movements before it.
+    /// Number of movements before it.
     pub(crate) movements: usize,
 }
 
-/// Cuts a file where movements begin.
+/// Cuts a file at the beginnings of movements.
 #[derive(Debug)]
 pub(crate) struct Cuts {
     most: u64,
     of: FileState,
     spans: Vec<Span>,
-    /// Of the part that has not been closed, and of its last movement.
+    /// The beginnings of the open part and of its last movement.
     begun: Option<(Start, Start)>,
 }
 
 impl Cuts {
-    /// Into parts of at most so many bytes, unless a movement has more.
+    /// Cuts into parts of at most `most` bytes, unless a movement has more.
     pub(crate) fn new(most: u64, of: FileState) -> Cuts {
         Cuts { most, of, spans: Vec::new(), begun: None }
     }
 
-    /// The next movement begins here.
+    /// Adds the beginning of the next movement.
     pub(crate) fn push(&mut self, here: Start) {
         let (first, last) = self.begun.unwrap_or((here, here));
         let is_full = here.byte - first.byte > self.most && last.byte > first.byte;
@@ -137,7 +137,7 @@ impl Cuts {
         self.spans.push(Span { number: self.spans.len(), bytes: byte..end, line, movements, of: self.of.clone() });
     }
 
-    /// The parts of a file that ends where it ended when it was opened.
+    /// The parts of the file, which ends where it ended when it was opened.
     pub(crate) fn finish(mut self) -> Vec<Span> {
         let Some((_, last)) = self.begun else { return Vec::new() };
         let end = self.of.bytes.max(last.byte);

@@ -1,4 +1,4 @@
-//! Roles of columns, from their names.
+//! Assigns roles to columns by their names.
 
 mod content;
 mod names;
@@ -13,7 +13,7 @@ use crate::names::selection::{flags, glob, select};
 use crate::{Fault, ReadError, ReadOptions};
 use motion::is_called_context;
 
-/// A column before its role is known.
+/// A column whose role is not yet known.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Column {
     pub(crate) name: String,
@@ -24,20 +24,20 @@ pub(crate) struct Column {
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub(crate) struct Roles {
     pub(crate) time: Option<usize>,
-    /// Of whole seconds in the column of time.
+    /// Nanoseconds beside whole seconds in the column of time.
     pub(crate) nanoseconds: Option<usize>,
     pub(crate) episode: Option<usize>,
     pub(crate) constraint: Option<usize>,
     pub(crate) state: Vec<usize>,
-    /// As many as the state, or none.
+    /// As many as the state, or empty.
     pub(crate) velocity: Vec<usize>,
-    /// What follows the state and has no velocity.
+    /// Channels that follow the state and have no velocity.
     pub(crate) context: Vec<usize>,
-    /// Words, which are expected to be the same everywhere: a frame, a device. Not used.
+    /// Columns of words, such as a frame or a device, that must be constant. Not used.
     pub(crate) words: Vec<usize>,
-    /// Not used, and not named by `--ignore` either.
+    /// Columns that are not used, though `--ignore` does not name them.
     pub(crate) ignored: Vec<usize>,
-    /// Whether the state was found here rather than named by the user.
+    /// Whether the state was detected rather than named by the user.
     pub(crate) state_guessed: bool,
 }
 
@@ -62,7 +62,7 @@ const EPISODES: [&str; 14] = [
 const CONSTRAINTS: [&str; 4] = ["constraint", "condition", "task", "task_index"];
 const NEVER_STATE: [&str; 7] = ["*effort*", "*torque*", "*current*", "*temperature*", "reward", "done", "success"];
 
-/// Assigns every column of `columns`; `place` names the file in errors.
+/// Assigns a role to every column of `columns`; `place` names the file in errors.
 pub(crate) fn assign(columns: &[Column], options: &ReadOptions, place: &str) -> Result<Roles, ReadError> {
     let names: Vec<&str> = columns.iter().map(|column| column.name.as_str()).collect();
     let ignored_by_user = flags(&options.ignore, &names);
@@ -123,7 +123,7 @@ impl Roles {
             || self.context.contains(&index)
     }
 
-    /// State is what is left, without what is the velocity of something left.
+    /// The state is every remaining column that is not the velocity of another one.
     fn guess_state(
         &mut self,
         names: &[&str],
@@ -147,7 +147,7 @@ impl Roles {
                 }
             }
         }
-        // What is a velocity has no velocity of its own here: 'ddx' next to 'x' and 'dx' stays state, and lacks one.
+        // A velocity has no velocity in turn: 'ddx' beside 'x' and 'dx' remains a state that lacks one.
         self.state = free.iter().copied().filter(|index| !velocities.contains(index)).collect();
         free.retain(|index| velocities.contains(index));
         if self.state.is_empty() {
@@ -158,7 +158,7 @@ impl Roles {
         Ok(())
     }
 
-    /// The velocities of the state by name: of every dimension, or an error, or of none.
+    /// Finds the velocities of the state by name: for every dimension, or for none; otherwise an error.
     fn guess_velocities(&mut self, names: &[&str], free: &mut Vec<usize>, place: &str) -> Result<(), ReadError> {
         let mut by_name: HashMap<String, usize> = HashMap::new();
         for &index in free.iter() {
@@ -184,7 +184,7 @@ impl Roles {
             let what = format!("some states have a velocity ({}), but {} lack one", known.join(", "), quoted(&lacking));
             let (known, lacking) = (known.join(","), lacking.join(","));
             let others = "--velocity with a column for each state";
-            // What is rarer does not belong: a gripper beside the state, or the velocities of a few.
+            // The minority does not belong: a gripper beside the state, or the velocities of a few columns.
             let remedy = if 2 * found.iter().flatten().count() > found.len() {
                 format!(
                     "--ignore {lacking} if it is no coordinate, --context {lacking} for a goal or the like, {others}, or --ignore {known}"
@@ -207,7 +207,7 @@ impl Roles {
     }
 }
 
-/// Refuses velocities that are not one for each column of the state, or columns that are both.
+/// Refuses velocities whose number differs from that of the state, and columns that have both roles.
 pub(crate) fn require_matching<S: AsRef<str>>(
     state: &[usize],
     velocity: &[usize],
@@ -229,7 +229,7 @@ pub(crate) fn require_matching<S: AsRef<str>>(
     Ok(())
 }
 
-/// Two columns of one name, unless columns were chosen by number.
+/// Refuses two columns with one name, unless columns were selected by number.
 fn refuse_duplicate_names(
     names: &[&str],
     ignored: &[bool],
@@ -252,7 +252,7 @@ fn refuse_duplicate_names(
     Ok(())
 }
 
-/// The columns that patterns name, in the order of the patterns.
+/// The columns that match patterns, in the order of the patterns.
 pub(crate) fn named<S: AsRef<str>>(patterns: &[String], names: &[S], place: &str) -> Result<Vec<usize>, ReadError> {
     select(patterns, names).map_err(|pattern| no_column(&pattern, names, place))
 }
@@ -267,13 +267,13 @@ fn one(pattern: Option<&str>, flag: &str, names: &[&str], place: &str) -> Result
     }
 }
 
-/// What was asked for does not exist; names what does, and the nearest.
+/// Error: a requested column does not exist; lists the existing ones.
 pub(crate) fn no_column<S: AsRef<str>>(pattern: &str, names: &[S], place: &str) -> ReadError {
     let what = format!("there is no '{pattern}'");
     ReadError::NoColumn(Fault::new(what, place, format!("one of: {}", shortened(names))))
 }
 
-/// Names with commas between, not more than a screen of them.
+/// Names separated by commas, at most 40.
 pub(crate) fn shortened<S: AsRef<str>>(names: &[S]) -> String {
     let first_names: Vec<&str> = names.iter().take(40).map(AsRef::as_ref).collect();
     let more = if names.len() > 40 { format!(", … ({} in all)", names.len()) } else { String::new() };

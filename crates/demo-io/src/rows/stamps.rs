@@ -1,22 +1,22 @@
-//! Stamps of every kind to seconds from an episode's first sample.
+//! Converts stamps of every kind to seconds from an episode's first sample.
 //!
-//! Seconds since 1970 in f64 resolve 2.4e-7 s, which makes the steps of a 1 kHz recording uneven. So stamps are stored as a
-//! whole number and a fraction, and the first is subtracted before any division.
+//! Seconds since 1970 in f64 have a resolution of 2.4e-7 s, which makes the steps of a 1 kHz recording uneven. Therefore
+//! stamps are stored as an integer and a fraction, and the first one is subtracted before any division.
 
 use crate::TimeUnit;
 
-/// A stamp in some unit, not yet in f64: `whole` + `part`.
+/// A stamp in any unit, not yet converted to f64: `whole` + `part`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Stamp {
     whole: i64,
     part: f64,
 }
 
-/// How many of a stamp's units make a second.
+/// Number of a stamp's units per second.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct TicksPerSecond(pub(crate) f64);
 
-/// Below this, f64 holds all digits that files have.
+/// Below this, f64 holds all digits that occur in files.
 const LARGE: f64 = 1e6;
 
 impl Stamp {
@@ -31,7 +31,7 @@ impl Stamp {
         if fits { Stamp { whole: value.trunc() as i64, part: value.fract() } } else { Stamp { whole: 0, part: value } }
     }
 
-    /// Digits, decimals, or a date; with the unit if the text decides it.
+    /// Parses digits, decimals, or a date; with the unit if the text determines it.
     pub(crate) fn text(text: &str) -> Option<(Self, Option<TicksPerSecond>)> {
         if let Ok(whole) = text.parse() {
             return Some((Stamp::whole(whole), None));
@@ -48,7 +48,7 @@ impl Stamp {
         nanoseconds_of_date(text).map(|whole| (Stamp::whole(whole), Some(TicksPerSecond(1e9))))
     }
 
-    /// With the nanoseconds of another column; the unit of both together is nanoseconds.
+    /// Adds the nanoseconds of another column; the unit of the sum is nanoseconds.
     pub(crate) fn with_nanoseconds(self, nanoseconds: f64) -> Self {
         let whole = self.whole.saturating_mul(1_000_000_000);
         let part = self.part * 1e9 + nanoseconds;
@@ -63,7 +63,7 @@ impl Stamp {
         self.part.is_finite()
     }
 
-    /// Units from `first` to here.
+    /// Number of units since `first`.
     pub(crate) fn since(self, first: Stamp) -> f64 {
         (i128::from(self.whole) - i128::from(first.whole)) as f64 + (self.part - first.part)
     }
@@ -74,7 +74,7 @@ impl Stamp {
 }
 
 impl TicksPerSecond {
-    /// Of `--time-unit`, if it is given.
+    /// The unit of `--time-unit`, if given.
     pub(crate) fn asked(unit: Option<TimeUnit>) -> Option<Self> {
         unit.map(|unit| {
             TicksPerSecond(match unit {
@@ -86,8 +86,8 @@ impl TicksPerSecond {
         })
     }
 
-    /// From a column's name (`t_ms`, `time [us]`), else from the size of its first stamp: what is far too large to be
-    /// seconds since 1970 is milliseconds, microseconds or nanoseconds.
+    /// Guesses the unit from a column's name (`t_ms`, `time [us]`), else from the size of its first stamp: a stamp far too
+    /// large for seconds since 1970 counts milliseconds, microseconds or nanoseconds.
     pub(crate) fn guess(name: &str, first: Stamp) -> Self {
         if let Some(known) = Self::from_name(name) {
             return known;
@@ -115,7 +115,8 @@ impl TicksPerSecond {
     }
 }
 
-/// `2023-11-14 22:13:20.05` or `14.11.2023 22:13:20,05`, with `T` or a blank, with or without a zone; nanoseconds since 1970.
+/// Nanoseconds since 1970 of `2023-11-14 22:13:20.05` or `14.11.2023 22:13:20,05`, with `T` or a blank, with or without a
+/// zone.
 fn nanoseconds_of_date(text: &str) -> Option<i64> {
     let (date, clock) = text.trim().split_once(['T', ' ', 't'])?;
     let day_first = date.contains('.');
@@ -140,14 +141,14 @@ fn number(digits: &str) -> Option<i64> {
     digits.bytes().all(|digit| digit.is_ascii_digit()).then(|| digits.parse().ok())?
 }
 
-/// Whole seconds and nanoseconds of `20.05`.
+/// Splits `20.05` into whole seconds and nanoseconds.
 fn seconds(text: &str) -> Option<(i64, i64)> {
     let (whole, decimals) = text.split_once(['.', ',']).unwrap_or((text, ""));
     let nanoseconds: String = decimals.chars().chain("000000000".chars()).take(9).collect();
     Some((number(whole)?, number(&nanoseconds)?))
 }
 
-/// The clock without its zone, and the zone in seconds east of Greenwich.
+/// The time of day without its zone, and the zone in seconds east of Greenwich.
 fn split_zone(clock: &str) -> Option<(&str, i64)> {
     if let Some(clock) = clock.strip_suffix(['Z', 'z']) {
         return Some((clock, 0));
@@ -161,7 +162,7 @@ fn split_zone(clock: &str) -> Option<(&str, i64)> {
     (hours < 24 && minutes < 60).then(|| (clock.trim_end(), sign * (hours * 3600 + minutes * 60)))
 }
 
-/// Days from 1970 to a date of the Gregorian calendar (years counted from March, so that the leap day is the last).
+/// Days from 1970 to a date of the Gregorian calendar. Years count from March, so that the leap day is the last.
 fn days_since_1970(year: i64, month: i64, day: i64) -> i64 {
     let year = if month <= 2 { year - 1 } else { year };
     let era = year.div_euclid(400);

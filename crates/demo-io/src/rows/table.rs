@@ -1,4 +1,4 @@
-//! Rows with named columns, of any format, become episodes.
+//! Turns rows with named columns, of any format, into episodes.
 
 use std::collections::HashMap;
 
@@ -10,22 +10,22 @@ use crate::rows::stamps::{Stamp, TicksPerSecond};
 use crate::{Fault, ReadError, ReadOptions};
 use motion::{Channel, Labels};
 
-/// One row of a table. A column that holds something else answers with its text.
+/// One row of a table. A column that holds something else returns its text as the error.
 pub(crate) trait Row {
-    /// NaN if nothing is there.
+    /// NaN if the value is missing.
     fn number(&self, column: usize) -> Result<f64, String>;
-    /// With the unit, if the text decides it.
+    /// With the unit, if the text determines it.
     fn stamp(&self, column: usize) -> Result<(Stamp, Option<TicksPerSecond>), String>;
-    /// Written to `label`.
+    /// Writes the label to `label`.
     fn label(&self, column: usize, label: &mut String);
 }
 
-/// Columns that tell where a table may be cut.
+/// Columns that determine where a table may be cut.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Cutting {
-    /// Where its labels change.
+    /// The table may be cut where the labels of this column change.
     pub(crate) episode: usize,
-    /// If its labels do not: what they mean depends on all rows.
+    /// The labels of this column must not change, because their meaning depends on all rows.
     pub(crate) constraint: Option<usize>,
 }
 
@@ -37,26 +37,26 @@ pub(crate) struct Table {
     roles: Roles,
     period: Option<f64>,
     ticks: Option<TicksPerSecond>,
-    /// Of stamps that are numbers.
+    /// The user's unit of numeric stamps.
     asked_ticks: Option<TicksPerSecond>,
-    /// The name of the only episode, where no column tells episodes apart.
+    /// Name of the only episode, if no column distinguishes episodes.
     only: String,
     episodes: Vec<RawEpisode>,
-    /// When the samples of each were taken.
+    /// The clock of each episode.
     clocks: Vec<Clock>,
-    /// Whether a label that changes within an episode tells where constraints switch.
+    /// Whether a label that changes within an episode marks a switch of constraints.
     switching: bool,
     by_label: HashMap<String, usize>,
     current: Option<usize>,
     label: String,
     unknown: Unknown,
-    /// What columns of words hold, as [`Roles::words`].
+    /// Contents of the columns [`Roles::words`].
     words: Vec<String>,
-    /// Names of the columns that the user takes as context.
+    /// Names of the columns that the user selects as context.
     context: Vec<String>,
     /// As [`ReadOptions::elsewhere`].
     elsewhere: Vec<String>,
-    /// Advice on a field that is no number.
+    /// Advice on a field that is not a number.
     pub(crate) hint: fn(&str) -> Option<String>,
 }
 
@@ -110,7 +110,8 @@ impl Table {
         [*time, *nanoseconds, *episode, *constraint].into_iter().flatten().chain(columns).collect()
     }
 
-    /// Forgets the episodes of the first rows, and keeps what they say of all others: the unit of stamps, what columns of words hold.
+    /// Forgets the episodes of the first rows, but keeps what applies to all rows: the unit of stamps and the contents of columns of
+    /// words.
     pub(crate) fn forget_episodes(&mut self) {
         self.episodes.clear();
         self.clocks.clear();
@@ -118,7 +119,8 @@ impl Table {
         self.current = None;
     }
 
-    /// The columns that tell where a table may be cut, after its first rows; none if its parts could not be read as the whole is.
+    /// The columns that determine where a table may be cut, known after its first rows; `None` if its parts cannot be read like the
+    /// whole.
     pub(crate) fn cutting(&self) -> Option<Cutting> {
         let has_unit = self.ticks.is_some() || self.period.is_some();
         let constraint = self.roles.constraint.filter(|&column| !says(&self.names[column]));
@@ -186,7 +188,7 @@ impl Table {
         Ok(episode)
     }
 
-    /// Columns of words tell movements apart, it seems, where they change.
+    /// Refuses a change in a column of words, because such a column probably distinguishes movements.
     fn expect_the_same_words(&mut self, place: u64, row: &impl Row) -> Result<(), ReadError> {
         for (at, &column) in self.roles.words.iter().enumerate() {
             row.label(column, &mut self.label);
@@ -212,7 +214,7 @@ impl Table {
         });
     }
 
-    /// Of the sample that is about to be added.
+    /// Labels the constraint of the sample that is about to be added.
     fn label_constraint(&mut self, episode: usize) {
         let raw = &mut self.episodes[episode];
         match &mut raw.constraint {
@@ -241,7 +243,7 @@ impl Table {
         ReadError::NotANumber(Fault::new(what, place, remedy))
     }
 
-    /// What was collected.
+    /// Returns the collected rows.
     pub(crate) fn finish(mut self) -> RawRecordings {
         let ticks = self.ticks.unwrap_or(TicksPerSecond(1.0));
         let name = |&index: &usize| self.names[index].as_str();
@@ -261,7 +263,7 @@ impl Table {
             self.roles.constraint.is_some_and(|column| says(&self.names[column])) || self.episodes.iter().any(differ);
         for (raw, clock) in self.episodes.iter_mut().zip(self.clocks) {
             raw.times = clock.seconds(raw.rows.len(), ticks);
-            // Numbers were appended one by one, and stay for as long as the recordings do.
+            // The vectors grew number by number and live as long as the recordings, so spare capacity is released.
             [&mut raw.times, &mut raw.positions, &mut raw.velocities].into_iter().for_each(Vec::shrink_to_fit);
             raw.constraint.take_if(|labels| !labels_vary || labels.is_blank());
         }
@@ -278,13 +280,13 @@ impl Table {
     }
 }
 
-/// Whether a column of this name tells of constraints: LeRobot numbers tasks even if there is one only, which says nothing, and a task
-/// may have many constraints.
+/// Whether a column of this name describes constraints. LeRobot numbers tasks even if there is only one, and a task may have many
+/// constraints.
 fn says(name: &str) -> bool {
     !name.to_lowercase().starts_with("task")
 }
 
-/// Appends some columns of a row; else the first that is no number, with its text.
+/// Appends columns of a row; on failure, returns the first one that is not a number, with its text.
 fn fill(row: &impl Row, columns: &[usize], numbers: &mut Vec<f64>) -> Result<(), (usize, String)> {
     for &column in columns {
         numbers.push(row.number(column).map_err(|text| (column, text))?);

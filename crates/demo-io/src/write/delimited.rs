@@ -5,7 +5,8 @@ use crate::ReadOptions;
 use crate::rows::roles::{Column, Content, assign};
 use motion::Recordings;
 
-/// `episode, t, x, y, x_vel, y_vel`, a row a sample, numbers in the shortest form that reads back to the same bits.
+/// Writes `episode, t, x, y, x_vel, y_vel`, one row per sample, with numbers in the shortest form that reads back to
+/// the same bits.
 pub(super) fn write(file: impl Write, recordings: &Recordings, separator: u8) -> Result<(), Failure> {
     let velocities = has_velocities(recordings)?;
     let constraints = recordings.episodes.iter().any(|episode| episode.constraint.is_some());
@@ -42,12 +43,12 @@ pub(super) fn write(file: impl Write, recordings: &Recordings, separator: u8) ->
 fn shortest(buffer: &mut String, value: f64) -> &str {
     use std::fmt::Write as _;
     buffer.clear();
-    // Writing to a String does not fail.
+    // Writing to a String cannot fail.
     let _ = write!(buffer, "{value:?}");
     buffer
 }
 
-/// A reader must find the same roles by itself.
+/// Checks that a reader detects the same roles.
 fn check(header: &[String], state: std::ops::Range<usize>) -> Result<(), WriteError> {
     let columns: Vec<Column> =
         header.iter().map(|name| Column { name: name.clone(), content: Content::Counting }).collect();

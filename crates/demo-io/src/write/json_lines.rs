@@ -8,7 +8,7 @@ use super::Failure;
 use crate::label_entry::LabelEntry;
 use motion::{Episode, Recordings, Times};
 
-/// A line an episode, with names, units and labels in each.
+/// Writes one line per episode, each with names, units and labels.
 pub(super) fn write(mut file: impl Write, recordings: &Recordings) -> Result<(), Failure> {
     let names: Vec<&str> = recordings.state.iter().map(|channel| &channel.name[..]).collect();
     let units: Vec<Option<&str>> = recordings.state.iter().map(|channel| channel.unit.as_deref()).collect();

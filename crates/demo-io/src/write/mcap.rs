@@ -16,17 +16,17 @@ use crate::rows::mcap::{EpisodeEntry, METADATA};
 use crate::rows::packed::Writer;
 use motion::Recordings;
 
-/// Stamp of the first sample: 0 would mean that a driver left it out.
+/// Stamp of the first sample: 0 would mean that a driver did not set it.
 const START: u64 = 1_000_000_000;
 
-/// The last second that a stamp of ROS 2 holds, in nanoseconds.
+/// The last second that a ROS 2 stamp can hold, in nanoseconds.
 const LATEST: u64 = i32::MAX as u64 * 1_000_000_000;
 
-/// Nanoseconds without a message between two movements, so that programs see them apart.
+/// Nanoseconds between two movements without a message, so that programs can separate them.
 const PAUSE: u64 = 5_000_000_000;
 
-/// Messages of `sensor_msgs/msg/JointState`, a message a sample; names of movements and units stand in a metadata record. With
-/// a robot also its URDF, once, and a message of `tf2_msgs/msg/TFMessage` a sample with all its links.
+/// Writes one `sensor_msgs/msg/JointState` message per sample. A metadata record holds the names of movements and the units.
+/// With a robot, also writes its URDF, once, and one `tf2_msgs/msg/TFMessage` message per sample with all its links.
 pub(super) fn write(file: impl Write, recordings: &Recordings, robot: Option<&dyn LinkFrames>) -> Result<(), Failure> {
     has_velocities(recordings)?;
     let topics = [JOINT_STATES, ROBOT_DESCRIPTION, TRANSFORMS];
@@ -58,7 +58,7 @@ pub(super) fn write(file: impl Write, recordings: &Recordings, robot: Option<&dy
     Ok(())
 }
 
-/// The stamp so many seconds after another; none beyond the largest of ROS 2, whose seconds are 32-bit integers.
+/// The stamp `seconds` after another; `None` beyond the largest stamp of ROS 2, whose seconds are 32-bit integers.
 fn at(start: u64, seconds: f64) -> Option<u64> {
     let stamp = start.checked_add((seconds * 1e9).round() as u64)?;
     (stamp <= LATEST).then_some(stamp)
@@ -84,7 +84,7 @@ fn transform_message(robot: &dyn LinkFrames, transforms: &[Isometry3<f64>], stam
     for ([parent, child], transform) in robot.links().iter().zip(transforms) {
         header(&mut writer, stamp, parent);
         writer.text(child);
-        // Quaternions of nalgebra are i, j, k, w, like those of ROS.
+        // nalgebra orders quaternions as i, j, k, w, like ROS.
         let numbers = transform.translation.vector.iter().chain(transform.rotation.coords.iter());
         numbers.for_each(|&number| writer.f64(number));
     }

@@ -8,8 +8,9 @@ use super::json_lines::common_step;
 use super::{Failure, has_velocities};
 use motion::{Episode, Recordings};
 
-/// `state` and `velocity` (M, n), episodes one after another up to `episode_ends`, `time` (M,) or `dt`, and texts
-/// `names`, `units`, `episode_names`, `constraint`; the last has a name a sample where it changes within an episode.
+/// Writes `state` and `velocity` (M, n), with the episodes in sequence up to `episode_ends`, `time` (M,) or `dt`, and
+/// the texts `names`, `units`, `episode_names`, `constraint`. The last has one name per sample if it changes within an
+/// episode.
 pub(super) fn write(file: impl Write, recordings: &Recordings) -> Result<(), Failure> {
     let episodes = &recordings.episodes;
     let n = recordings.state.len();
@@ -55,7 +56,7 @@ pub(super) fn write(file: impl Write, recordings: &Recordings) -> Result<(), Fai
     Ok(())
 }
 
-/// A name an episode, or one a sample where any changes within an episode.
+/// One name per episode, or one per sample if any changes within an episode.
 fn constraints(episodes: &[Episode]) -> Vec<&str> {
     let switches = |episode: &Episode| episode.constraint.as_ref().is_some_and(|labels| labels.switches() > 0);
     let each_sample = episodes.iter().any(switches);
@@ -67,7 +68,7 @@ fn constraints(episodes: &[Episode]) -> Vec<&str> {
     names
 }
 
-/// An entry of the archive, stored as it is: numbers of sensors hardly compress.
+/// Adds an entry to the archive, uncompressed, because numbers of sensors hardly compress.
 fn add(
     archive: &mut ZipArchiveWriter<impl Write>,
     name: &str,
@@ -88,7 +89,7 @@ fn add(
 fn header(descr: &str, shape: &[usize]) -> Vec<u8> {
     let mut lengths = String::new();
     for length in shape {
-        // Writing to a String does not fail.
+        // Writing to a String cannot fail.
         let _ = write!(lengths, "{length}, ");
     }
     let mut text = format!("{{'descr': '{descr}', 'fortran_order': False, 'shape': ({}), }}", lengths.trim_end());

@@ -69,7 +69,7 @@ proptest::proptest! {
     }
 }
 
-/// An array with names for something else than episodes or samples.
+/// An array with as many names as neither episodes nor samples.
 #[test]
 fn a_wrong_number_of_names_is_refused() {
     let folder = tempfile::tempdir().unwrap();

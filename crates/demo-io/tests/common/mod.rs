@@ -1,4 +1,4 @@
-//! What all tests of reading need.
+//! Helpers for all tests of reading.
 
 #![allow(
     dead_code,
@@ -13,7 +13,7 @@ use demo_io::{ReadError, ReadOptions, read};
 use motion::Recordings;
 use tempfile::TempDir;
 
-/// A folder for files of one test.
+/// A folder for the files of one test.
 pub struct Files(TempDir);
 
 impl Files {
@@ -38,13 +38,13 @@ pub fn read_with(path: &Path, options: &ReadOptions) -> Result<Recordings, ReadE
     read(path, options, &mut |_| ())
 }
 
-/// Reads one file of this content.
+/// Reads one file with this content.
 pub fn parsed(name: &str, content: impl AsRef<[u8]>, options: &ReadOptions) -> Result<Recordings, ReadError> {
     let files = Files::new();
     read_with(&files.add(name, content), options)
 }
 
-/// The error of reading this content, which has three lines and says all of `words`.
+/// Checks the error of reading this content: it has three lines and contains all of `words`.
 pub fn refused(name: &str, content: impl AsRef<[u8]>, options: &ReadOptions, code: &str, words: &[&str]) {
     let error = parsed(name, content, options).expect_err("should be refused");
     let text = error.to_string();
@@ -55,7 +55,7 @@ pub fn refused(name: &str, content: impl AsRef<[u8]>, options: &ReadOptions, cod
     }
 }
 
-/// What was found while reading, a line each.
+/// The findings of reading, one per line.
 pub fn said(recordings: &Recordings) -> String {
     let lines = recordings.findings.iter().map(|finding| format!("{}: {}", finding.what, finding.next));
     lines.collect::<Vec<_>>().join("\n")
@@ -66,7 +66,7 @@ pub fn names(recordings: &Recordings) -> Vec<&str> {
     recordings.state.iter().map(|channel| &channel.name[..]).collect()
 }
 
-/// Numbers of samples.
+/// Number of samples of each episode.
 pub fn lengths(recordings: &Recordings) -> Vec<usize> {
     recordings.episodes.iter().map(|episode| episode.times.len()).collect()
 }

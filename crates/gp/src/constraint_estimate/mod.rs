@@ -1,8 +1,8 @@
-//! The constraints of movements, once the policy is known: (S26) to (S29).
+//! Estimates the constraints of movements, once the policy is known: (S26) to (S29).
 //!
-//! Where u = Nπ + A⁺b, the disagreement π̂ − u lies in the span of Aᵀ, and the velocity along the rows of A stays constant, or 0,
-//! while A and b do. Both together tell the rows of A: a velocity that does not vary may never have been wanted, and what the policy
-//! wants in vain may be its error.
+//! If u = Nπ + A⁺b, the disagreement π̂ − u lies in the span of Aᵀ, and the velocity along the rows of A is constant, or 0, while A and b
+//! are. Only both properties together identify the rows of A: the policy may have no component along a velocity that does not vary, and a
+//! component of the disagreement may be the policy's error.
 
 mod noise;
 mod parts;
@@ -31,33 +31,34 @@ use stretch_kind::{Movement, StretchKind};
 use view::{Disagreement, SHARED, View};
 use wanted::Wanted;
 
-/// Standard deviation of the policy in the first round, as a share of its root mean square; in the second it is what the
+/// Standard deviation of the policy in the first round, as a share of its root mean square. In the second round it is the one that the
 /// first leaves.
 const FIRST: f64 = 0.05;
-/// Squared standard deviations from which something is seen.
+/// Squared standard deviations above which something counts as seen.
 const SEEN: f64 = 9.0;
 
-/// What a direction varies by that is known, in units of all variation: more than any other.
+/// Scatter assigned to a direction that is already a row of A, as a multiple of the total scatter, so that it exceeds that of any other
+/// direction.
 const VARIES: f64 = 4.0;
 
 /// The constraints of all movements.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ConstraintEstimates {
-    /// In the order of movements and time. Samples that are in none are too few to say.
+    /// In the order of movements and time. Samples in no stretch are too few to decide.
     pub stretches: Vec<StretchEstimate>,
     /// s², the variance of a velocity along an axis.
     pub noise: f64,
-    /// Variance of a component of the policy where movements tell it.
+    /// Variance of a component of the policy in regions that movements cover.
     pub policy_variance: f64,
 }
 
 impl ConstraintEstimates {
-    /// Of movements in given rows, from a policy that was learnt from these or others. Takes time with the number of
-    /// movements, the square of their samples (up to 60) and the cube of a space's dimensions. Spaces of more than twelve
-    /// dimensions are not searched.
+    /// Estimates the constraints of movements in given rows, with a policy learnt from these or other rows. Time grows with the number of
+    /// movements, the square of their samples (up to 60) and the cube of a space's dimension. Spaces of more than twelve dimensions are not
+    /// searched.
     ///
     /// # Errors
-    /// [`GpError::Lengths`] for a policy or Jacobians that do not fit the rows, [`GpError::ShortMovements`] if no movement has four samples.
+    /// [`GpError::Lengths`] if the policy or Jacobians do not match the rows, [`GpError::ShortMovements`] if no movement has four samples.
     pub fn of(rows: &Rows, policy: &dyn LearntPolicy, spaces: &[TaskSpace]) -> Result<Self, GpError> {
         let lengths = |what, found, expected| Err(GpError::Lengths { what, found, expected });
         if policy.dim() != rows.states().nrows() {
@@ -80,7 +81,7 @@ impl ConstraintEstimates {
         let policy_variance = search.left(&search.parts(first)).unwrap_or(first);
         let pushing = search.parts_in_likely_spaces(policy_variance);
         let (cost, rarity) = (search.cost(&pushing), search.rarity.clone());
-        // Noise lets constraints move that do not: all of them do, or none.
+        // Noise makes fixed constraints appear to move, so either all move or none do.
         search.still = true;
         let mut parts = search.parts_in_likely_spaces(policy_variance);
         if search.cost(&parts) > cost {
@@ -91,7 +92,7 @@ impl ConstraintEstimates {
     }
 }
 
-/// Where a space moves; none if it is not searched.
+/// Directions in which a space moves; `None` if it is not searched.
 fn basis(space: &TaskSpace, dim: usize) -> Option<DMatrix<f64>> {
     space.moved(dim).map(|(basis, _)| basis).filter(|basis| basis.ncols() <= MOST_DIMENSIONS)
 }
@@ -103,14 +104,14 @@ struct Search<'a> {
     bases: Vec<Option<DMatrix<f64>>>,
     noise: f64,
     wanted: Wanted<'a>,
-    /// Of (S38).
+    /// Costs of (S38).
     rarity: Vec<f64>,
     /// Whether b = 0 in all stretches.
     still: bool,
 }
 
 impl Search<'_> {
-    /// [`Search::parts`], once it is known in which spaces most constraints are.
+    /// [`Search::parts`], after estimating in which spaces most constraints are.
     fn parts_in_likely_spaces(&mut self, least: f64) -> Vec<Parts> {
         self.rarity.fill(0.0);
         let parts = self.parts(least);
@@ -122,7 +123,7 @@ impl Search<'_> {
         self.parts(least)
     }
 
-    /// (S28) and (S38) of all movements.
+    /// Sum of (S28) and (S38) over all movements.
     fn cost(&self, parts: &[Parts]) -> f64 {
         let alone = PARAMETER * self.rows.dim() as f64;
         let of = |parts: &Parts| {
@@ -133,7 +134,7 @@ impl Search<'_> {
         parts.iter().map(of).sum()
     }
 
-    /// Of every movement, or every part between known switches; `least` is the least variance of the policy.
+    /// The parts of each movement, or of each section between known switches; `least` is the minimum variance of the policy.
     fn parts(&self, least: f64) -> Vec<Parts> {
         let of = |movement: &&[usize]| {
             let known = self.rows.labels().is_some();
@@ -150,7 +151,7 @@ impl Search<'_> {
         self.movements.par_iter().map(of).collect()
     }
 
-    /// The row at which the part after a switch begins: the best of all that lie between the two rows that were searched.
+    /// The row at which the part after a switch begins: the best of all rows between the two that were searched.
     fn switch(&self, parts: &Parts, (left, right): (&Part<StretchKind>, &Part<StretchKind>), least: f64) -> usize {
         let (last, first) = (parts.rows[left.end - 1], parts.rows[right.begin]);
         let between = last + 1..first;
@@ -177,7 +178,7 @@ impl Search<'_> {
         Movement { disagreement, views, rarity: self.rarity.clone(), still: self.still }
     }
 
-    /// The variance of the policy that all parts leave, the median over them; none if there are none.
+    /// The policy's variance that all parts leave, as the median over them; `None` if there are none.
     fn left(&self, parts: &[Parts]) -> Option<f64> {
         let of = |of: &Parts| -> Vec<f64> {
             of.found.iter().filter_map(|part| upper_median(of.movement.left(part))).collect()
@@ -207,7 +208,7 @@ impl Search<'_> {
     fn stretch(&self, parts: &Parts, part: &Part<StretchKind>, found: bool) -> StretchEstimate {
         let Parts { rows, movement, .. } = parts;
         let index = |at: usize| self.rows.indices()[rows[at]];
-        // Known switches are where they are said to be, even if a few samples beside them do not fit.
+        // Known switches are used as given, even if a few samples beside them do not fit.
         let ends = if self.rows.labels().is_some() { (0, rows.len() - 1) } else { (part.begin, part.end - 1) };
         let dim = self.rows.dim();
         let mut stretch = StretchEstimate {
@@ -253,7 +254,7 @@ impl Search<'_> {
         eigen.eigenvectors.select_columns(&hidden)
     }
 
-    /// What a stretch without a constraint is: one that follows the policy, or one where the policy does not want to move.
+    /// Classifies a stretch without a constraint: it follows the policy, or the policy does not move there either.
     fn without(&self, parts: &Parts, part: &Part<StretchKind>) -> Acting {
         let seen = |at: usize| {
             let wanted = self.wanted.actions.column(parts.rows[at]).norm_squared();
@@ -263,7 +264,7 @@ impl Search<'_> {
         if 2 * count >= part.end - part.begin { Acting::Nothing } else { Acting::Unseen }
     }
 
-    /// b, the standard deviation of its components, and the speed.
+    /// Computes b, the standard deviation of its components, and the speed.
     fn find_bound(&self, stretch: &mut StretchEstimate, rows: &[usize]) {
         let (rank, count) = (stretch.matrix.nrows(), rows.len() as f64);
         let (mut sum, mut gain, mut square) = (DVector::zeros(rank), 0.0, 0.0);

@@ -1,4 +1,4 @@
-//! What a velocity's noise counts where constraints are looked for.
+//! Noise of velocities in the search for constraints.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -6,13 +6,13 @@ use crate::Rows;
 use crate::rows::task_space::TaskSpace;
 use crate::stretches::noise::{known_noise, noise_of_differences, velocity_noise};
 
-/// Share of their known variance below which velocities differ so little from sample to sample that they share their errors: they
-/// are slopes of smoothed positions.
+/// If velocities differ from sample to sample by less than this share of their known variance, they share their errors, as slopes
+/// of smoothed positions do.
 const SMOOTH: f64 = 0.25;
-/// Samples that then share one error.
+/// Number of samples that then share one error.
 const SMOOTHED: f64 = 8.0;
 
-/// The least of the upper bounds (S20) in all spaces; more where samples share their errors.
+/// The least of the upper bounds (S20) in all spaces; increased if samples share their errors.
 pub(super) fn noise(rows: &Rows, movements: &[&[usize]], spaces: &[TaskSpace]) -> Option<f64> {
     let in_space = |space: &TaskSpace| {
         let (basis, gain) = space.moved(rows.dim())?;

@@ -1,4 +1,4 @@
-//! The parts that a movement was found to have.
+//! The parts found in a movement.
 
 use rayon::prelude::*;
 
@@ -6,15 +6,15 @@ use super::spaces::rarity;
 use super::stretch_kind::{Movement, StretchKind};
 use crate::stretches::partition::{Part, SPARE};
 
-/// Parts of a movement, or of what lies between two known switches: the rows searched, and what was found, begin and end counted
-/// among them.
+/// Parts of a movement, or of a section between two known switches: the searched rows, and the parts found, whose begin and end
+/// are indices into these rows.
 pub(super) struct Parts {
     pub(super) rows: Vec<usize>,
     pub(super) movement: Movement,
     pub(super) found: Vec<Part<StretchKind>>,
 }
 
-/// What a constraint in each space costs by the parts that have one.
+/// Cost (S38) of a constraint in each space, from the parts that have one.
 pub(super) fn rarity_of(parts: &[Parts], spaces: usize) -> Vec<f64> {
     let constrained = |part: &&Part<StretchKind>| part.kind != StretchKind::Free;
     let of = |of: &Parts| -> Vec<Vec<f64>> {
@@ -24,7 +24,8 @@ pub(super) fn rarity_of(parts: &[Parts], spaces: usize) -> Vec<f64> {
 }
 
 impl Parts {
-    /// The parts found, and what lies between them if it is long enough to say that it is in none; whether it was found.
+    /// The parts found, and the gaps between them that are long enough to report; each with a flag that tells whether it was
+    /// found.
     pub(super) fn with_gaps(&self) -> Vec<(Part<StretchKind>, bool)> {
         let ends = self.found.iter().map(|part| part.end);
         let begins = self.found.iter().map(|part| part.begin).chain([self.rows.len()]);

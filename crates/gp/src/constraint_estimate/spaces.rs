@@ -1,9 +1,10 @@
-//! In which spaces constraints are constant: as a rule all of a recording in one, which few samples under noise do not tell (S38).
+//! Determines the spaces in which constraints are constant (S38). Usually all constraints of a recording are in one space, which a few
+//! noisy samples do not reveal.
 
-/// Rounds of expectation and maximisation.
+/// Number of rounds of expectation maximisation.
 const ROUNDS: usize = 500;
 
-/// What a constraint in each space costs, the most frequent one 0, from the costs (S28) in every space of all stretches that have a
+/// Cost of a constraint in each space, 0 for the most frequent one, from the costs (S28) in every space of all stretches that have a
 /// constraint.
 pub(super) fn rarity(costs: &[Vec<f64>], spaces: usize) -> Vec<f64> {
     let mut shares = vec![1.0 / spaces as f64; spaces];
@@ -30,8 +31,8 @@ mod tests {
     use super::*;
 
     proptest! {
-        /// Stretches that look alike in two spaces count for the one that the others are in; the spaces' order does not matter, and the
-        /// shares are those of the stretches that tell for certain.
+        /// Stretches with equal costs in two spaces count for the more frequent one. The order of the spaces does not matter, and the
+        /// shares are those of the unambiguous stretches.
         #[test]
         fn rare_spaces_cost_more(clear in 1usize..30, rare in 0usize..30, alike in 0usize..30, cost in -50.0..50.0f64) {
             let stretches = |first: f64, second: f64, count: usize| vec![vec![cost + first, cost + second]; count];
@@ -46,7 +47,7 @@ mod tests {
         }
     }
 
-    /// One space costs nothing, and without stretches none does.
+    /// A single space costs nothing, and without stretches no space does.
     #[test]
     fn nothing_to_tell() {
         assert_eq!(rarity(&[vec![3.0], vec![-1.0]], 1), [0.0]);

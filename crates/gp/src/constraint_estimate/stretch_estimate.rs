@@ -1,61 +1,60 @@
 use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 
-/// Standard deviations, and share of the speed, by which b must differ from 0.
+/// Minimum difference of b from 0, in standard deviations and as a share of the speed.
 const DEVIATIONS: f64 = 3.0;
 const SHARE: f64 = 0.01;
 
-/// What acted on a stretch of a movement.
+/// The constraint (or its absence) on a stretch of a movement.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Acting {
     /// A constraint A u = b, constant in its space.
     Constraint,
-    /// Something that turns the movement aside, but with no A and b that stay constant: a surface that bends, or too many
-    /// switches.
+    /// An influence that deflects the movement, but without constant A and b: a curved surface, or too many switches.
     Changing,
-    /// Nothing that can be seen: the movement follows the policy.
+    /// No visible constraint: the movement follows the policy.
     Nothing,
-    /// The policy does not want to move either, so that nothing can be seen.
+    /// The policy does not move either, so that no constraint would be visible.
     Unseen,
 }
 
 /// A stretch of a movement, and the constraint that acted on it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StretchEstimate {
-    /// Which movement.
+    /// Index of the movement.
     pub trajectory: usize,
     /// First and last sample.
     pub samples: (usize, usize),
-    /// What acted.
+    /// The kind of constraint.
     pub acting: Acting,
-    /// Place of the task space whose velocities v the constraint A v = b is on.
+    /// Index of the task space to whose velocities v the constraint A v = b applies.
     pub space: usize,
-    /// A, (k, m): orthonormal rows, the largest entry of each positive. No rows unless it is a constraint.
+    /// A, (k, m): orthonormal rows, the largest entry of each positive. No rows unless there is a constraint.
     pub matrix: DMatrix<f64>,
     /// b, (k): mean velocity along each row, in units of the space per second; 0 if no constraint of the recording moves.
     pub bound: DVector<f64>,
-    /// Standard deviation of every component of b.
+    /// Standard deviation of each component of b.
     pub bound_deviation: f64,
     /// Root mean square speed in the space.
     pub speed: f64,
     /// Expected angle between a row and the true rows' span, in radians.
     pub angle: f64,
-    /// Logarithm of the likelihood of this constraint over that of none.
+    /// Logarithm of the likelihood ratio of this constraint to none.
     pub evidence: f64,
-    /// Directions of the recorded coordinates, (n, r), along which a further constraint would not show: the velocity does not
-    /// vary along them, and the policy does not want to move along them.
+    /// Directions of the recorded coordinates, (n, r), along which a further constraint would not be visible, because the
+    /// velocity does not vary along them, and the policy has no component there.
     pub hidden: DMatrix<f64>,
 }
 
 impl StretchEstimate {
-    /// Whether b of a row differs from 0: the constraint pushes.
+    /// Whether b of a row differs from 0, that is, the constraint pushes.
     pub fn pushes(&self, row: usize) -> bool {
         self.bound[row].abs() > (DEVIATIONS * self.bound_deviation).max(SHARE * self.speed)
     }
 }
 
-/// The same span in orthonormal rows (k, m) that lie along axes as far as possible, each with its largest entry positive.
+/// Orthonormal rows (k, m) with the same span, along axes as far as possible, the largest entry of each positive.
 pub(super) fn canonical(columns: &DMatrix<f64>) -> DMatrix<f64> {
     let (dim, rank) = columns.shape();
     let mut span = columns * columns.transpose();
@@ -79,7 +78,7 @@ mod tests {
     use super::*;
 
     proptest! {
-        /// Rows are orthonormal, span the same, and their largest entries are positive.
+        /// The rows are orthonormal, span the same space, and have positive largest entries.
         #[test]
         fn rows_span_the_same(dim in 1usize..7, seed in any::<u64>()) {
             let mut rng = ChaCha8Rng::seed_from_u64(seed);
@@ -92,7 +91,7 @@ mod tests {
         }
     }
 
-    /// Axes are found whatever their basis.
+    /// Axes are found whatever the basis of their span.
     #[test]
     fn axes_are_axes() {
         let turned = DMatrix::from_row_slice(3, 2, &[0.6, -0.8, 0.0, 0.0, -0.8, -0.6]);

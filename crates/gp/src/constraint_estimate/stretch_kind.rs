@@ -1,30 +1,30 @@
-//! What acted on a part of a movement: nothing, or a constraint of some rank in some space.
+//! The kind of a part of a movement: free, or under a constraint of some rank in some space.
 
 use super::view::{Directions, Disagreement, View};
 use crate::stretches::partition::{Costs, Growing, Part, SPARE};
 use crate::stretches::segmentation::{DIMENSION, PARAMETER, SEGMENT};
 
-/// Nothing, or a constraint that is constant in a space.
+/// Free, or under a constraint that is constant in a space.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum StretchKind {
     Free,
     Constrained { space: usize, rank: usize },
 }
 
-/// One movement in all spaces.
+/// One movement, viewed in all spaces.
 pub(super) struct Movement {
     pub(super) disagreement: Disagreement,
-    /// None where a space is not looked at.
+    /// `None` for a space that is not searched.
     pub(super) views: Vec<Option<View>>,
-    /// What a constraint in each space costs for being rarer than others: (S38).
+    /// Additional cost (S38) of a constraint in each space, for its rarity.
     pub(super) rarity: Vec<f64>,
     /// Whether b = 0.
     pub(super) still: bool,
 }
 
 impl Movement {
-    /// (S28): the least cost of samples `begin..end` and what it is of; and, of the recorded coordinates, minus twice the log likelihood
-    /// of each rank from 1 on.
+    /// (S28): the least cost of samples `begin..end` and its kind; also minus twice the log likelihood of each rank from 1 on, in the
+    /// recorded coordinates.
     pub(super) fn cheapest(&self, begin: usize, end: usize) -> ((f64, StretchKind), Vec<f64>) {
         let none = self.disagreement.square(begin, end);
         let mut best = (none + SEGMENT, StretchKind::Free);
@@ -49,7 +49,7 @@ impl Movement {
         (best, of_ranks)
     }
 
-    /// Of all parts, for one search.
+    /// Costs of all parts, for one search.
     pub(super) fn costs(&self) -> MovementCosts<'_> {
         let recorded = self.views.iter().flatten().filter(|view| view.is_recorded());
         let varies = recorded.map(View::variation).sum::<f64>() / self.disagreement.noise;
@@ -58,7 +58,7 @@ impl Movement {
         MovementCosts { movement: self, left, bounded }
     }
 
-    /// The least cost of a constraint in one space and its rank; none where no rank is possible.
+    /// The least cost of a constraint in one space, and its rank; `None` if no rank is possible.
     fn best_rank(&self, view: &View, directions: &Directions, (begin, end): (usize, usize)) -> Option<(f64, usize)> {
         let (none, dim) = (self.disagreement.square(begin, end), directions.values.len());
         let mut best: Option<(f64, usize)> = None;
@@ -78,7 +78,7 @@ impl Movement {
         best
     }
 
-    /// (S28) of a part in each space, however rare; infinite where no rank is possible.
+    /// (S28) of a part in each space, without the cost of rarity; infinite if no rank is possible.
     pub(super) fn costs_in_spaces(&self, part: &Part<StretchKind>) -> Vec<f64> {
         let ends = (part.begin, part.end);
         let of = |view: &View| {
@@ -88,8 +88,8 @@ impl Movement {
         self.views.iter().map(|view| view.as_ref().and_then(of).unwrap_or(f64::INFINITY)).collect()
     }
 
-    /// What A of so many rows and b cost, or A alone: less where velocities are known better than the policy, since one that does not
-    /// vary is then no accident.
+    /// Cost of the parameters of A with `rank` rows, and of b unless it is 0. It is less if velocities are known better than the policy,
+    /// because a velocity that does not vary is then unlikely to do so by chance.
     fn price(&self, (begin, end): (usize, usize), dim: usize, rank: usize) -> f64 {
         let parameters = PARAMETER * (rank * (dim - rank + usize::from(!self.still))) as f64;
         let accident = self.disagreement.accident(begin, end);
@@ -103,7 +103,7 @@ impl Movement {
         Some((view, view.directions(part.begin, part.end, self.disagreement.noise), rank))
     }
 
-    /// |Nd|² of a part's samples, each over the dimensions that its constraint leaves.
+    /// |Nd|² of a part's samples, each divided by the number of dimensions that the constraint leaves free.
     pub(super) fn left(&self, part: &Part<StretchKind>) -> Vec<f64> {
         let of = &self.disagreement.of;
         let squares = |at: usize| of.column(at).norm_squared();
@@ -122,9 +122,9 @@ impl Movement {
 /// (S28) of all parts of a movement.
 pub(super) struct MovementCosts<'a> {
     movement: &'a Movement,
-    /// Minus twice the log likelihood of each rank in the recorded coordinates: each is the least of a sum of squares.
+    /// Minus twice the log likelihood of each rank in the recorded coordinates; each is the minimum of a sum of squares.
     left: Growing,
-    /// Whether no other space is looked at.
+    /// Whether only the recorded coordinates are searched.
     bounded: bool,
 }
 
@@ -148,7 +148,7 @@ impl Costs for MovementCosts<'_> {
     }
 }
 
-/// Least price of a row of A: three standard deviations of what the policy wants in vain.
+/// Minimum cost of a row of A: three standard deviations of the policy's blocked component, squared.
 const ROW: f64 = 9.0;
-/// Radians by which a row may be uncertain, at most: a direction that merely was not used has any angle.
+/// Maximum uncertainty of a row, in radians. The angle of a direction that was merely not used is arbitrary.
 const MOST_ANGLE: f64 = 0.25;

@@ -1,24 +1,24 @@
-//! The samples of one movement, as a task space shows them.
+//! The samples of one movement, viewed in a task space.
 
 use nalgebra::{DMatrix, DVector, DVectorView};
 
 use crate::rows::task_space::TaskSpace;
 use crate::stretches::segmentation::PrefixSums;
 
-/// Samples that share one error of the policy: it is smooth.
+/// Number of samples that share one error of the policy, because the policy is smooth.
 pub(super) const SHARED: f64 = 4.0;
 
-/// What of two policies a movement shows: disagreement d = π̂ − u, weighted by its variance.
+/// Disagreement d = π̂ − u between the policy and a movement, weighted by its variance.
 pub(super) struct Disagreement {
     /// (n, N).
     pub(super) of: DMatrix<f64>,
-    /// One over the variance of a component, (N).
+    /// Inverse variance of a component, (N).
     pub(super) weights: Vec<f64>,
     /// s², the variance of a component of u.
     pub(super) noise: f64,
     /// Σ w |d|² over the first samples, (N + 1).
     squares: Vec<f64>,
-    /// Σ log 1/(w s²), likewise: how much better velocities are known than the policy.
+    /// Σ log 1/(w s²), likewise: the precision of velocities relative to the policy.
     accidents: Vec<f64>,
 }
 
@@ -42,25 +42,25 @@ impl Disagreement {
         self.squares.last().copied().unwrap_or(0.0)
     }
 
-    /// Twice the log likelihood ratio that a velocity which does not vary has by being so exact, as often as the policy's error
-    /// is another.
+    /// Twice the log likelihood ratio by which an exactly constant velocity is unlikely by chance, counted once for each
+    /// independent error of the policy.
     pub(super) fn accident(&self, begin: usize, end: usize) -> f64 {
         (self.accidents[end] - self.accidents[begin]) / SHARED
     }
 }
 
-/// Velocities v = Ju and the multipliers y that Jᵀy = d has, in the directions that the space moves in.
+/// Velocities v = Ju and the solutions y of Jᵀy = d, in the directions in which the space moves.
 pub(super) struct View {
-    /// Directions of the space that move, (M, m).
+    /// Directions in which the space moves, (M, m).
     pub(super) basis: DMatrix<f64>,
     /// v, (m, N).
     velocities: DMatrix<f64>,
     /// Jd, (m, N).
     disagreements: DMatrix<f64>,
-    /// JJᵀ of each sample, (m, m); none if it is I.
+    /// JJᵀ of each sample, (m, m); `None` if it is I.
     grams: Option<Vec<DMatrix<f64>>>,
     scatters: PrefixSums,
-    /// Over the first samples.
+    /// Cumulative sums over the samples.
     sums: Vec<Sums>,
 }
 
@@ -70,24 +70,25 @@ struct Sums {
     multipliers: DMatrix<f64>,
     /// Σ tr JJᵀ / m.
     gain: f64,
-    /// What noise makes of Σ v vᵀ in units of s², and of `multipliers`, beyond the same in all directions.
+    /// Anisotropic contribution of noise to Σ v vᵀ, in units of s², and to `multipliers`.
     noise: (DMatrix<f64>, DMatrix<f64>),
 }
 
-/// The directions (m, m) of a task space by how much they look like rows of A over some samples, and by how much: (S26).
+/// Directions (m, m) of a task space, sorted by their similarity to rows of A over some samples, with the eigenvalues that
+/// measure it: (S26).
 pub(super) struct Directions {
     pub(super) values: Vec<f64>,
     pub(super) vectors: DMatrix<f64>,
 }
 
 impl Directions {
-    /// The first of them, (m, k).
+    /// The first `rank` directions, (m, k).
     pub(super) fn first(&self, rank: usize) -> DMatrix<f64> {
         self.vectors.columns(0, rank).into_owned()
     }
 
-    /// Standard deviation of the angle between a row among the first `rank` and their true span (S29): by how much the cost bends
-    /// as the row turns towards each of the others.
+    /// Standard deviation of the angle between a row among the first `rank` and their true span (S29), from the curvature of the
+    /// cost as the row turns towards each other direction.
     pub(super) fn angle(&self, rank: usize) -> f64 {
         let of_row =
             |row: &f64| self.values[rank..].iter().map(|other| 1.0 / (other - row).max(f64::MIN_POSITIVE)).sum();
@@ -96,7 +97,7 @@ impl Directions {
 }
 
 impl View {
-    /// Of some rows of a space, where constraints may stand `still`: b = 0. `velocities` (n, N) are theirs.
+    /// The view of some rows in a space; if `still`, constraints have b = 0. `velocities` (n, N) belong to these rows.
     pub(super) fn of(
         space: &TaskSpace,
         basis: &DMatrix<f64>,
@@ -149,7 +150,7 @@ impl View {
         View { basis, velocities, disagreements, grams, scatters, sums }
     }
 
-    /// Whether v = u: what [`View::change`] adds to [`Disagreement::square`] is then the least of a sum of squares.
+    /// Whether v = u. Then the sum of [`View::change`] and [`Disagreement::square`] is the minimum of a sum of squares.
     pub(super) fn is_recorded(&self) -> bool {
         self.grams.is_none()
     }
@@ -159,8 +160,8 @@ impl View {
         self.scatters.total()
     }
 
-    /// Eigenvectors of C/gs² − gY (S26) over `begin..end`, the least eigenvalue first: a row of A has a velocity that does not
-    /// vary, or none, and takes away much of what the policy wants.
+    /// Eigenvectors of C/gs² − gY (S26) over `begin..end`, the least eigenvalue first. Along a row of A the velocity is constant
+    /// or 0, and much of the policy is blocked.
     pub(super) fn directions(&self, begin: usize, end: usize, noise: f64) -> Directions {
         let (from, to) = (&self.sums[begin], &self.sums[end]);
         let count = (end - begin) as f64;
@@ -181,8 +182,7 @@ impl View {
         }
     }
 
-    /// (S27): by how much minus twice the log likelihood changes from no constraint to one of this rank along
-    /// the first directions.
+    /// (S27): change of minus twice the log likelihood from no constraint to one of this rank along the first directions.
     pub(super) fn change(
         &self,
         (begin, end): (usize, usize),
@@ -205,7 +205,7 @@ impl View {
         (0..end - begin).map(of_sample).sum()
     }
 
-    /// |Nd|² of a sample: what a constraint with these rows, columns (m, k), leaves of the disagreement.
+    /// Remaining |Nd|² of a sample under a constraint with these rows of A, given as columns (m, k).
     pub(super) fn left(&self, at: usize, rows: &DMatrix<f64>, disagreement: &Disagreement) -> f64 {
         let wants = rows.tr_mul(&self.disagreements.column(at));
         let taken = match &self.grams {
@@ -219,12 +219,12 @@ impl View {
     }
 }
 
-/// y of JJᵀ y = Jd, of least length, and (JJᵀ)⁺.
+/// The shortest y with JJᵀ y = Jd, and (JJᵀ)⁺.
 fn multiplier(gram: Option<&DMatrix<f64>>, wanted: DVectorView<'_, f64>) -> (DVector<f64>, Option<DMatrix<f64>>) {
     let inverse =
         gram.and_then(|gram| gram.clone().pseudo_inverse(SINGULAR * gram.trace().max(f64::MIN_POSITIVE)).ok());
     (inverse.as_ref().map_or_else(|| wanted.into_owned(), |inverse| inverse * wanted), inverse)
 }
 
-/// Share of the trace of JJᵀ below which an eigenvalue is 0.
+/// Share of the trace of JJᵀ below which an eigenvalue counts as 0.
 const SINGULAR: f64 = 1e-9;

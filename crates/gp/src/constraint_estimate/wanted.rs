@@ -1,4 +1,4 @@
-//! What a policy wants at the states of some rows.
+//! The policy's actions at the states of some rows.
 
 use std::collections::HashMap;
 use std::sync::{Mutex, PoisonError};
@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 use crate::Rows;
 
-/// Rows whose actions are asked for at once.
+/// Number of rows whose actions are computed at once.
 const TOGETHER: usize = 1024;
 
 /// The policy at every row.
@@ -18,8 +18,8 @@ pub(super) struct Wanted<'a> {
     policy: &'a dyn LearntPolicy,
     /// (n, M).
     pub(super) actions: DMatrix<f64>,
-    /// Mean variance of a component, once it is asked for: it costs far more than the action, and few rows are searched. Those of one
-    /// movement are asked for by one thread, so that the same are asked for together at any number of threads.
+    /// Mean variance of a component, computed on demand, because it costs far more than the action, and few rows are searched. One
+    /// thread computes those of a movement, so that the batches are the same at any number of threads.
     variances: Mutex<HashMap<usize, f64>>,
 }
 
@@ -57,7 +57,7 @@ impl<'a> Wanted<'a> {
         rows.iter().map(|row| known[row]).collect()
     }
 
-    /// Of a component.
+    /// Mean square of a component.
     pub(super) fn mean_square(&self) -> f64 {
         self.actions.norm_squared() / self.actions.len() as f64
     }

@@ -16,7 +16,7 @@ use crate::{GpError, Rows};
 
 /// The direct GP's training data: velocities, in scaled coordinates and with noise weights.
 ///
-/// To fit a policy use [`DirectGp`](crate::DirectGp); with these data the caller sets the amplitudes.
+/// To fit a policy, use [`DirectGp`](crate::DirectGp); with this type the caller sets the amplitudes.
 #[derive(Debug, Clone)]
 pub struct DirectData {
     pub(crate) scaling: Scaling,
@@ -33,7 +33,7 @@ pub struct DirectData {
 }
 
 impl DirectData {
-    /// Every row, with noise weights D, (M); rows of a trajectory need not be contiguous.
+    /// Takes every row, with noise weights D, (M); the rows of a trajectory need not be contiguous.
     ///
     /// # Errors
     /// [`GpError::Lengths`], [`GpError::OneState`], [`GpError::NoMotion`], [`GpError::Overflow`], or [`GpError::Value`]
@@ -107,21 +107,21 @@ impl DirectData {
         self.unit
     }
 
-    /// (R2) on all rows at θ = (log a_1 .. log a_B, log σ²); none if the covariance has no Cholesky factor.
+    /// (R2) on all rows at θ = (log a_1 .. log a_B, log σ²); `None` if the covariance has no Cholesky factor.
     ///
     /// # Panics
-    /// If there is not one θ a block and one more.
+    /// If `theta` does not have one entry per block and one more.
     pub fn evidence(&self, blocks: &[DirectBlock], theta: &[f64]) -> Option<Evidence> {
         let all: Vec<usize> = (0..self.z.ncols()).collect();
         let task = Task::of(&self.covariance(blocks), &all, &self.conditions());
         task.evidence(&DVector::from_column_slice(theta), &mut Workspace::default())
     }
 
-    /// The model at θ with noise raised by κ, and its leave-one-trajectory-out predictions (R3); none if the
+    /// The model at θ with the noise increased by κ, and its leave-one-trajectory-out predictions (R3); `None` if the
     /// covariance has no Cholesky factor.
     ///
     /// # Panics
-    /// If there is not one θ a block and one more.
+    /// If `theta` does not have one entry per block and one more.
     pub fn condition(
         &self,
         blocks: &[DirectBlock],
@@ -133,7 +133,7 @@ impl DirectData {
         Some((self.model(blocks.to_vec(), fit), left_out))
     }
 
-    /// Amplitudes by marginal likelihood on the hyper rows, noise by held-out prediction.
+    /// Determines amplitudes by the marginal likelihood on the hyper rows, noise by held-out prediction.
     pub(crate) fn fit(&self, blocks: &[DirectBlock], hyper: &[usize]) -> Option<FamilyFit> {
         fit_family(&self.covariance(blocks), hyper, &self.conditions(), None)
     }
@@ -146,7 +146,8 @@ impl DirectData {
         DirectModel::new(scaled, (blocks, amplitudes), self.z.clone(), weights, (level.noise, whitening))
     }
 
-    /// The model of these amplitudes, conditioned on all rows through at most so many of them; none without factor.
+    /// The model with these amplitudes, conditioned on all rows through at most `most` of them; `None` without a
+    /// Cholesky factor.
     pub(crate) fn induced(
         &self,
         (blocks, amplitudes): (&[DirectBlock], &[f64]),
@@ -170,7 +171,7 @@ impl DirectData {
     }
 }
 
-/// D of rows whose velocities have this mean square a component.
+/// D of rows whose velocities have this mean square per component.
 fn noise_weights(kept: &Kept, unit_squared: f64) -> Vec<f64> {
     match &kept.variances {
         None => vec![1.0; kept.speeds.len()],

@@ -10,23 +10,23 @@ use crate::left_out::{LeftOutPredictions, poorly_predicted};
 use crate::rows::kept::{Kept, Selection};
 use crate::{GpError, Rows};
 
-/// A Gaussian process on velocities, for unconstrained motion. One covariance for all components.
+/// A Gaussian process on velocities, for unconstrained motion. All components share one covariance.
 ///
 /// It takes the same rows as [`SlopeGp`](crate::SlopeGp) and chooses its family, amplitudes and noise in the same way.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct DirectGp {
-    /// Families tried; the one that predicts held-out trajectories best is kept, ties to the first. If the first predicts
-    /// all but 1e-8 of the variance, the others are skipped.
+    /// Families to try. The one that best predicts held-out trajectories is kept; ties go to the first. If the first
+    /// predicts all but 1e-8 of the variance, the others are skipped.
     pub families: Vec<Family>,
-    /// Largest number of rows; more are thinned evenly in time. Time grows with its cube, memory with its square; at
-    /// most [`MOST_ROWS`](crate::MOST_ROWS).
+    /// Maximum number of rows; more are thinned evenly in time. Time grows with its cube, memory with its square. At most
+    /// [`MOST_ROWS`](crate::MOST_ROWS).
     pub max_rows: usize,
     /// Number of random rows whose marginal likelihood sets the amplitudes.
     pub hyper_rows: usize,
-    /// Rows of uncertain velocity are used if |u|² exceeds this squared times the variance of u.
+    /// A row of uncertain velocity is used if |u|² exceeds this squared times the variance of u.
     pub least_snr: f64,
-    /// Rows are used if |u| exceeds this share of the largest.
+    /// A row is used if |u| exceeds this share of the largest.
     pub least_speed: f64,
 }
 
@@ -36,7 +36,7 @@ impl Default for DirectGp {
     }
 }
 
-/// A fitted direct GP. Stored by serde and read back, it predicts the same to the last bit.
+/// A fitted direct GP. After storing and reading by serde, its predictions are the same to the last bit.
 #[derive(Debug, Clone)]
 pub struct DirectFit {
     pub(crate) model: DirectModel,
@@ -45,7 +45,7 @@ pub struct DirectFit {
     pub(crate) z_squared: f64,
 }
 
-/// The model taken, and its held-out predictions.
+/// The selected model, and its held-out predictions.
 pub(crate) struct DirectOutcome {
     data: DirectData,
     pub(crate) fit: DirectFit,
@@ -55,10 +55,10 @@ pub(crate) struct DirectOutcome {
 }
 
 impl DirectGp {
-    /// Learns from rows. The generator draws one permutation and, where rows are thinned, an offset.
+    /// Learns from rows. The generator draws one permutation and, if rows are thinned, an offset.
     ///
     /// # Errors
-    /// [`GpError::Parameter`], or why the rows are refused: too few, no motion, one state, no Cholesky factor.
+    /// [`GpError::Parameter`], or the reason for refusing the rows: too few, no motion, one state, no Cholesky factor.
     pub fn fit<R: Rng + ?Sized>(&self, rows: &Rows, rng: &mut R) -> Result<DirectFit, GpError> {
         let kept = self.selection()?.keep(rows, rng)?;
         Ok(self.outcome(&kept)?.fit)
@@ -92,7 +92,7 @@ impl DirectGp {
 }
 
 impl DirectOutcome {
-    /// The same family and amplitudes on all rows, through at most so many of them; none without factor.
+    /// The same family and amplitudes on all rows, through at most `most` of them; `None` without a Cholesky factor.
     pub(crate) fn on_all_rows(&self, all: &Kept, most: usize) -> Option<DirectOutcome> {
         let DirectFit { model, family, .. } = &self.fit;
         let data = self.data.of_others(all);
@@ -105,22 +105,22 @@ impl DirectOutcome {
 }
 
 impl DirectFit {
-    /// û and its variance (R4), the variance not yet times max(1, z²).
+    /// û and its variance (R4), not yet multiplied by max(1, z²).
     pub fn model(&self) -> &DirectModel {
         &self.model
     }
 
-    /// The family kept.
+    /// The selected family.
     pub fn family(&self) -> Family {
         self.family
     }
 
-    /// Held-out R² (R3); 1 − R² is the error to expect.
+    /// Held-out R² (R3); 1 − R² is the expected error.
     pub fn r_squared(&self) -> f64 {
         self.r_squared
     }
 
-    /// Mean squared held-out error over its predictive variance (R3).
+    /// Mean squared held-out error divided by its predictive variance (R3).
     pub fn z_squared(&self) -> f64 {
         self.z_squared
     }

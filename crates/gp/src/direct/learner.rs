@@ -1,4 +1,4 @@
-//! The direct GP behind the traits of all learners.
+//! The direct GP as an implementation of the learners' common traits.
 
 use motion::{Certainty, Demonstrations, LearnError, Learner, LearntPolicy, Policy, SampleIndex};
 use nalgebra::{DMatrix, DMatrixView, DVectorView, DVectorViewMut};
@@ -13,9 +13,9 @@ use crate::support::only_deviation_into;
 /// The direct GP as a learner.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct DirectLearner {
-    /// How recordings become rows.
+    /// The front end, which turns recordings into rows.
     pub front_end: FrontEnd,
-    /// The Gaussian process fitted to them.
+    /// The Gaussian process that is fitted to the rows.
     pub gp: DirectGp,
 }
 

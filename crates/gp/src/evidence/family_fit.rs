@@ -8,7 +8,7 @@ use crate::kernel::family::Family;
 use crate::left_out::LeftOutPredictions;
 use crate::left_out::level::{Conditions, Level};
 
-/// A family with amplitudes by marginal likelihood and noise raised by held-out prediction.
+/// A family with amplitudes from the marginal likelihood and noise increased by held-out prediction.
 #[derive(Debug)]
 pub(crate) struct FamilyFit {
     /// a_b, (B).
@@ -17,10 +17,10 @@ pub(crate) struct FamilyFit {
 }
 
 impl FamilyFit {
-    /// At a given θ = (log a_1 .. log a_B, log σ²) and κ; none if the covariance has no Cholesky factor.
+    /// The fit at a given θ = (log a_1 .. log a_B, log σ²) and κ; `None` if the covariance has no Cholesky factor.
     ///
     /// # Panics
-    /// If there is not one θ a block and one more.
+    /// If `theta` does not have one entry per block and one more.
     pub(crate) fn at(
         covariance: &impl Covariance,
         theta: &[f64],
@@ -35,19 +35,20 @@ impl FamilyFit {
     }
 }
 
-/// Where the first search begins: log a_b, and log σ² of every search.
+/// Start of the first search: all a_b, and σ² for every search.
 const AMPLITUDE: f64 = 0.3;
 const NOISE: f64 = 1e-2;
-/// From this number of hyper rows on, half of them are searched first: an eighth of the work leads most of the way.
+/// From this number of hyper rows on, half of them are searched first. That takes an eighth of the work and leads most of the
+/// way.
 const WORTH_TWO_SEARCHES: usize = 200;
-/// On half of the rows, and on all of them after that or at once.
+/// Limits on half of the rows, and then (or directly) on all of them.
 const ON_HALF: Limits = Limits { iterations: 40, tolerance: 1e-4 };
 const AFTER_HALF: Limits = Limits { iterations: 12, tolerance: 1e-5 };
 const AT_ONCE: Limits = Limits { iterations: 40, tolerance: 1e-5 };
 
-/// Minimises (S8) on the hyper rows from equal amplitudes, then climbs κ on all rows. If that does not predict nearly
-/// exactly, the same from a second start, amplitudes (B): (S8) may have several minima, and left-out movements tell them apart.
-/// None if there is no Cholesky factor even at κ = 1.
+/// Minimises (S8) on the hyper rows from equal amplitudes, then increases κ on all rows. If the result does not predict nearly
+/// exactly, also searches from a second start, amplitudes (B): (S8) may have several minima, which left-out movements
+/// distinguish. `None` if there is no Cholesky factor even at κ = 1.
 pub(crate) fn fit_family(
     covariance: &impl Covariance,
     hyper: &[usize],
@@ -65,11 +66,11 @@ pub(crate) fn fit_family(
     }
 }
 
-/// The search of a family, from wherever it begins.
+/// The search of a family, from any start.
 struct Search<'a, C> {
     covariance: &'a C,
     conditions: &'a Conditions<'a>,
-    /// What is searched one after the other, each with its limits.
+    /// The objectives of successive searches, each with its limits.
     tasks: Vec<(Task, Limits)>,
 }
 
@@ -85,7 +86,7 @@ impl<'a, C: Covariance> Search<'a, C> {
         Search { covariance, conditions, tasks }
     }
 
-    /// The fit that a search from these amplitudes, (B), leads to; none without Cholesky factor.
+    /// The fit found by a search from these amplitudes, (B); `None` without a Cholesky factor.
     fn from(&self, amplitudes: &[f64]) -> Option<FamilyFit> {
         let blocks = amplitudes.len();
         let with_noise = |amplitude: f64, noise: f64| {
@@ -97,7 +98,7 @@ impl<'a, C: Covariance> Search<'a, C> {
         for (task, limits) in &self.tasks {
             let mut workspace = Workspace::default();
             theta = minimise(|theta| task.evidence(theta, &mut workspace), &theta, &bounds, *limits, &mut curvature);
-            // J of twice as many rows is about twice as curved.
+            // J of twice as many rows has about twice the curvature.
             curvature.scale(2.0);
         }
         let amplitudes: Vec<f64> = theta.iter().take(blocks).map(|log| log.exp()).collect();
@@ -106,7 +107,7 @@ impl<'a, C: Covariance> Search<'a, C> {
     }
 }
 
-/// Tries one family, and if that does not predict exactly, all others at once. In the order of the families.
+/// Fits one family, and if it does not predict exactly, all others in parallel. Results are in the order of the families.
 pub(crate) fn each_until_exact<T: Send>(
     families: &[Family],
     attempt: impl Fn(Family) -> Option<T> + Sync,

@@ -7,15 +7,15 @@ use nalgebra::DVector;
 use crate::evidence::Evidence;
 
 const MEMORY: usize = 10;
-/// Stop when no entry of the projected gradient exceeds this.
+/// The search stops when no entry of the projected gradient exceeds this.
 const FLAT: f64 = 1e-5;
-/// Share of the slope's promise that a step must keep.
+/// Share of the linear prediction by which a step must lower the value.
 const ARMIJO: f64 = 1e-4;
 const SHORTENINGS: usize = 20;
-/// Stands for a covariance without Cholesky factor.
+/// Value for a covariance without a Cholesky factor.
 const WALL: f64 = 1e10;
 
-/// Lower and upper bounds of every variable.
+/// Lower and upper bound of each variable.
 #[derive(Debug, Clone)]
 pub(crate) struct Bounds {
     pub(crate) lower: DVector<f64>,
@@ -27,7 +27,7 @@ impl Bounds {
         point.sup(&self.lower).inf(&self.upper)
     }
 
-    /// The gradient without the entries that push a variable out of the box.
+    /// The gradient without the entries that would move a variable out of the box.
     fn free(&self, point: &DVector<f64>, gradient: &DVector<f64>) -> DVector<f64> {
         DVector::from_fn(point.len(), |k, _| {
             let out =
@@ -37,20 +37,20 @@ impl Bounds {
     }
 }
 
-/// When a search ends.
+/// Stopping criteria of a search.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Limits {
     pub(crate) iterations: usize,
-    /// A decrease of the value that is worth no further step.
+    /// The search stops at a step that lowers the value by less than this.
     pub(crate) tolerance: f64,
 }
 
-/// What a search has learnt of the curvature: the last steps, and how much they changed the gradient, the newest first.
+/// The curvature learnt by a search: the last steps and the changes of the gradient, the newest first.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Curvature(VecDeque<(DVector<f64>, DVector<f64>)>);
 
 impl Curvature {
-    /// Becomes that of `factor` times the objective.
+    /// Rescales to the curvature of `factor` times the objective.
     pub(crate) fn scale(&mut self, factor: f64) {
         self.0.iter_mut().for_each(|(_, y)| *y *= factor);
     }
@@ -63,7 +63,7 @@ impl Curvature {
     }
 }
 
-/// The least point found from `start`; a value of none counts as 1e10 with zero gradient.
+/// The best point found from `start`; a missing value counts as 1e10 with zero gradient.
 pub(crate) fn minimise(
     mut objective: impl FnMut(&DVector<f64>) -> Option<Evidence>,
     start: &DVector<f64>,
@@ -99,7 +99,7 @@ pub(crate) fn minimise(
     point
 }
 
-/// −Hg by the two-loop recursion over the pairs (s, y), the newest first; variables held at a bound stay.
+/// −Hg by the two-loop recursion over the pairs (s, y), the newest first; variables held at a bound do not move.
 fn descent(free: &DVector<f64>, Curvature(pairs): &Curvature) -> DVector<f64> {
     let mut direction = free.clone();
     let mut shares = Vec::new();
@@ -110,7 +110,7 @@ fn descent(free: &DVector<f64>, Curvature(pairs): &Curvature) -> DVector<f64> {
     }
     match pairs.front() {
         Some((s, y)) => direction *= s.dot(y) / y.norm_squared(),
-        // As long a first step as a variable is likely to need.
+        // The length of a first step that a variable is likely to need.
         None => direction /= free.norm().max(1.0),
     }
     for ((s, y), share) in pairs.iter().zip(shares).rev() {
@@ -120,8 +120,8 @@ fn descent(free: &DVector<f64>, Curvature(pairs): &Curvature) -> DVector<f64> {
     DVector::from_fn(free.len(), |k, _| if free[k] == 0.0 { 0.0 } else { -direction[k] })
 }
 
-/// The first of the steps 1, a cubic's least point, then halves, that lowers the value by enough; none once steps promise less than
-/// the tolerance.
+/// The first of the steps 1, minimum of a cubic, then halves, that lowers the value sufficiently; `None` once steps promise less
+/// than the tolerance.
 fn search(
     evaluate: &mut impl FnMut(&DVector<f64>) -> Evidence,
     bounds: &Bounds,
@@ -146,7 +146,7 @@ fn search(
     None
 }
 
-/// Where the cubic through both ends of [0, 1] with these slopes is least; ½ if nowhere.
+/// Minimum on [0, 1] of the cubic with these values and slopes at both ends; ½ if there is none.
 fn cubic(at_0: f64, at_1: f64, (slope_0, slope_1): (f64, f64)) -> f64 {
     let bend = slope_0 + slope_1 - 3.0 * (at_1 - at_0);
     let root = (bend * bend - slope_0 * slope_1).sqrt();
@@ -165,8 +165,8 @@ mod tests {
 
     const LIMITS: Limits = Limits { iterations: 200, tolerance: 1e-10 };
 
-    /// Searches a bowl with its lowest point at `least`, then the bowl `factor` times as steep, from the same start but with the
-    /// curvature of the first search. Gives what was found and how often each was evaluated; the first also with its gradient there.
+    /// Minimises a quadratic with its minimum at `least`, then the quadratic `factor` times as steep from the same start, but with
+    /// the curvature of the first search. Returns the points found and the numbers of evaluations; for the first also the gradient.
     fn searched_twice(dim: usize, width: f64, factor: f64, seed: u64) -> ([(DVector<f64>, usize); 2], DVector<f64>) {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         let root = DMatrix::from_fn(dim, dim, |_, _| rng.random_range(-1.0..1.0));
@@ -191,7 +191,7 @@ mod tests {
     }
 
     proptest! {
-        /// The least point of a bowl in a box is where no free entry of the gradient is left.
+        /// At the minimum of a quadratic in a box, the free part of the gradient vanishes.
         #[test]
         fn bowls_have_their_least_points(dim in 1_usize..8, width in 0.5..3.0_f64, factor in 0.5..4.0_f64, seed in any::<u64>()) {
             let ([(found, _), (again, _)], free) = searched_twice(dim, width, factor, seed);
@@ -200,7 +200,7 @@ mod tests {
         }
     }
 
-    /// Curvature that is known saves evaluations.
+    /// Known curvature saves evaluations.
     #[test]
     fn known_curvature_saves_evaluations() {
         let (mut unknown, mut known) = (0, 0);

@@ -15,7 +15,7 @@ use pulp::{Arch, Simd, WithSimd};
 use crate::kernel::covariance::{Covariance, add_noise};
 use crate::left_out::level::Conditions;
 
-/// Pull of every log parameter towards −4, and its strength: the last term of (S8).
+/// Centre −4 of the prior on each log parameter, and its strength: the last term of (S8).
 const CENTRE: f64 = -4.0;
 const STRENGTH: f64 = 0.01;
 
@@ -28,7 +28,7 @@ pub struct Evidence {
     pub gradient: DVector<f64>,
 }
 
-/// The rows whose marginal likelihood is maximised, with their targets (h, c): c columns with one covariance for all.
+/// The rows whose marginal likelihood is maximised, with their targets (h, c): c columns that share one covariance.
 #[derive(Debug)]
 pub(crate) struct Task {
     pub(crate) blocks: Vec<DMatrix<f64>>,
@@ -36,7 +36,7 @@ pub(crate) struct Task {
     pub(crate) targets: DMatrix<f64>,
 }
 
-/// What [`Task::evidence`] works on, kept from one θ to the next: square matrices of as many rows as the task has.
+/// Memory for [`Task::evidence`], reused for every θ: square matrices with as many rows as the task.
 #[derive(Debug, Default)]
 pub(crate) struct Workspace {
     /// The covariance, then its factor.
@@ -58,7 +58,7 @@ impl Workspace {
 }
 
 impl Task {
-    /// These rows of a covariance and of what it is to explain.
+    /// These rows of a covariance and of the targets.
     pub(crate) fn of(covariance: &impl Covariance, rows: &[usize], conditions: &Conditions<'_>) -> Task {
         Task {
             blocks: covariance.each_among(rows),
@@ -67,10 +67,10 @@ impl Task {
         }
     }
 
-    /// (S8), (S9), (R2) at θ = (log a_1 .. log a_B, log σ²); none if the covariance has no Cholesky factor.
+    /// (S8), (S9), (R2) at θ = (log a_1 .. log a_B, log σ²); `None` if the covariance has no Cholesky factor.
     ///
     /// # Panics
-    /// If there is not one θ a block and one more.
+    /// If `theta` does not have one entry per block and one more.
     pub(crate) fn evidence(&self, theta: &DVector<f64>, workspace: &mut Workspace) -> Option<Evidence> {
         assert_eq!(theta.len(), self.blocks.len() + 1, "one log amplitude a block, and the noise");
         let columns = self.targets.ncols() as f64;
@@ -85,7 +85,7 @@ impl Task {
         let fit = 0.5 * self.targets.dot(&weights);
         let prior = 0.5 * STRENGTH * theta.iter().map(|theta| (theta - CENTRE).powi(2)).sum::<f64>();
         let value = fit + columns * half_log_determinant + prior;
-        // c K⁻¹ − AAᵀ: every derivative is half its inner product with that of K.
+        // c K⁻¹ − AAᵀ: every derivative is half its inner product with the derivative of K.
         factor.inverse_into(slack, triangle);
         *covariance = factor.into_matrix();
         if columns > 1.0 {
@@ -108,10 +108,11 @@ impl Task {
     }
 }
 
-/// Blocks whose columns are read side by side.
+/// Number of blocks whose columns are read side by side.
 const ABREAST: usize = 4;
 
-/// Writes Σ a_b K_b into the lower triangle of `sum`: column by column, so that a column stays near while blocks pass by.
+/// Writes Σ a_b K_b into the lower triangle of `sum`, column by column, so that the column stays in the cache for all
+/// blocks.
 struct WeightedSum<'a> {
     blocks: &'a [DMatrix<f64>],
     amplitudes: &'a [f64],
@@ -140,7 +141,7 @@ impl WithSimd for WeightedSum<'_> {
     }
 }
 
-/// tr(AK_b) for every block, of symmetric matrices of which the lower triangles are given.
+/// tr(AK_b) for every block, from the lower triangles of symmetric matrices.
 struct InnerProducts<'a> {
     matrix: &'a DMatrix<f64>,
     blocks: &'a [DMatrix<f64>],
@@ -169,14 +170,14 @@ impl WithSimd for InnerProducts<'_> {
     }
 }
 
-/// Where the part of a column from the diagonal down stands.
+/// Range of the part of a column from the diagonal down.
 #[inline(always)]
 fn below(matrix: &DMatrix<f64>, column: usize) -> Range<usize> {
     let rows = matrix.nrows();
     column * rows + column..(column + 1) * rows
 }
 
-/// Adds a_b k_b to a column, one block after the other.
+/// Adds a_b k_b to a column, block after block.
 #[inline(always)]
 fn add<S: Simd, const N: usize>(simd: S, column: &mut [f64], blocks: [&[f64]; N], amplitudes: [f64; N]) {
     let (groups, rest) = column.as_chunks_mut::<LANES>();
@@ -196,7 +197,7 @@ fn add<S: Simd, const N: usize>(simd: S, column: &mut [f64], blocks: [&[f64]; N]
     }
 }
 
-/// Adds, for every block, twice the inner product of a column with its one, the diagonal once.
+/// Adds, for every block, twice the inner product of a column with the block's column, counting the diagonal once.
 #[inline(always)]
 fn add_products<S: Simd, const N: usize>(simd: S, products: &mut [f64; N], a: &[f64], blocks: [&[f64]; N]) {
     let (a_groups, a_rest) = a.as_chunks::<LANES>();

@@ -1,4 +1,4 @@
-//! Covariances of rows with the inducing ones, each divided by the root of its noise weight.
+//! Covariances of rows with the inducing rows, each divided by the square root of its noise weight.
 
 use std::ops::Range;
 
@@ -8,12 +8,12 @@ use nalgebra::DMatrix;
 use crate::kernel::covariance::Covariance;
 use crate::left_out::level::Conditions;
 
-/// A prior, the rows that represent all, and what all are to be conditioned on.
+/// A prior, the inducing rows, and the data of all rows.
 #[derive(Debug)]
 pub(crate) struct Features<'a, C> {
     pub(crate) covariance: &'a C,
     pub(crate) amplitudes: &'a [f64],
-    /// Of the rows, (m).
+    /// Indices of the inducing rows, (m).
     pub(crate) inducing: Vec<usize>,
     pub(crate) conditions: &'a Conditions<'a>,
 }

@@ -1,4 +1,4 @@
-//! Leave-one-trajectory-out prediction of a model that was conditioned on all rows through some of them: closed form (S36).
+//! Leave-one-trajectory-out prediction of a model conditioned on all rows through inducing rows, in closed form (S36).
 
 use linalg::{Factor, subtract_gram, subtract_outer};
 use nalgebra::{DMatrix, DMatrixView};
@@ -9,22 +9,22 @@ use crate::inducing::spectrum::Spectrum;
 use crate::kernel::covariance::Covariance;
 use crate::left_out::LeftOutPredictions;
 
-/// Rows whose features are at hand together.
+/// Number of rows whose features are in memory together.
 const TOGETHER: usize = 2048;
 
-/// A spectrum at a level of noise, floors included.
+/// A spectrum at a noise level, including floors.
 pub(crate) struct Leaving<'a, C> {
     pub(crate) features: &'a Features<'a, C>,
     pub(crate) spectrum: &'a Spectrum,
-    /// κσ², which the policy is conditioned with.
+    /// κσ², with which the policy is conditioned.
     pub(crate) noise: f64,
-    /// σ², which rows have.
+    /// σ², the noise of the rows.
     pub(crate) own: f64,
-    /// Of [`Spectrum::coefficients`].
+    /// From [`Spectrum::coefficients`].
     pub(crate) coefficients: &'a DMatrix<f64>,
 }
 
-/// Groups of rows, with ΦV of each where that is computed once for several levels of noise.
+/// Groups of rows, with ΦV of each if it is computed once for several noise levels.
 pub(crate) struct Groups<'a> {
     pub(crate) rows: Vec<&'a [usize]>,
     products: Option<Vec<DMatrix<f64>>>,
@@ -40,7 +40,7 @@ impl<'a> Groups<'a> {
         self.rows.iter().map(|rows| rows.len()).sum()
     }
 
-    /// Keeps ΦV of every row: m numbers each.
+    /// Stores ΦV of every row: m numbers each.
     pub(crate) fn with_products<C: Covariance>(self, features: &Features<'_, C>, spectrum: &Spectrum) -> Self {
         let products = self.rows.par_iter().map(|rows| features.times(rows, &spectrum.w)).collect();
         Groups { products: Some(products), ..self }
@@ -49,13 +49,13 @@ impl<'a> Groups<'a> {
 
 /// Residuals and variances of one group, in the units of its rows.
 type Group = (DMatrix<f64>, Vec<f64>);
-/// ΦV of the rows of a group, if it is at hand.
+/// ΦV of the rows of a group, if stored.
 type Products<'a> = Option<&'a DMatrix<f64>>;
 
 impl<C: Covariance> Leaving<'_, C> {
-    /// Each of these groups predicted without itself; the numbers are of their rows, in this order. `spread` is Σ w|y|² of them, or
-    /// about whatever is predicted without a model. Costs min(m, n_t) n_t m for each, with all features computed once or, of long
-    /// groups, twice.
+    /// Predicts each of these groups without itself; results are in the order of their rows. `spread` is Σ w|y|² of these rows,
+    /// about the prediction without a model. Costs min(m, n_t) n_t m per group, with all features computed once, or twice for long
+    /// groups.
     pub(crate) fn each(&self, groups: &Groups<'_>, spread: f64) -> Option<LeftOutPredictions> {
         let products = |at: usize| groups.products.as_ref().map(|products| &products[at]);
         let group = |(at, rows): (usize, &&[usize])| self.group(rows, products(at));
@@ -82,7 +82,7 @@ impl<C: Covariance> Leaving<'_, C> {
         Some((residuals, variances))
     }
 
-    /// Through I − H_tt, (n_t, n_t).
+    /// By I − H_tt, (n_t, n_t).
     fn few(&self, rows: &[usize], products: Products<'_>) -> Option<Group> {
         let (mut errors, known, b) = self.own(rows, products.map(DMatrix::as_view));
         let mut rest = DMatrix::identity(rows.len(), rows.len());
@@ -97,7 +97,7 @@ impl<C: Covariance> Leaving<'_, C> {
         Some((errors, variances))
     }
 
-    /// Through I − BᵀB, (m, m), by Woodbury: (I − BBᵀ)⁻¹ = I + B (I − BᵀB)⁻¹ Bᵀ.
+    /// By I − BᵀB, (m, m), with Woodbury's identity: (I − BBᵀ)⁻¹ = I + B (I − BᵀB)⁻¹ Bᵀ.
     fn many(&self, rows: &[usize], products: Products<'_>) -> Option<Group> {
         let of = |begin, count| products.map(|products| products.rows(begin, count));
         let own = |begin: usize, part: &[usize]| self.own(part, of(begin, part.len()));
@@ -130,7 +130,7 @@ impl<C: Covariance> Leaving<'_, C> {
         Some((residuals, variances))
     }
 
-    /// |(I − BBᵀ)⁻¹ B diag(s² + κσ²)^{-1/2}|² of every row of B, with `leave` for the first factor; not computed where κ = 1.
+    /// |(I − BBᵀ)⁻¹ B diag(s² + κσ²)^{-1/2}|² for every row of B, where `leave` applies the first factor; not computed if κ = 1.
     fn biases(&self, mut b: DMatrix<f64>, leave: impl Fn(&mut DMatrix<f64>)) -> Vec<f64> {
         if self.noise == self.own {
             return vec![0.0; b.nrows()];
@@ -162,7 +162,7 @@ impl<C: Covariance> Leaving<'_, C> {
         (errors, known, b)
     }
 
-    /// Prior variance that no inducing row says anything of, as D^{-1/2} K_nm is scaled.
+    /// Prior variance that the inducing rows do not explain, in the scale of D^{-1/2} K_nm.
     fn unknown(&self, row: usize, known: f64) -> f64 {
         let Features { covariance, amplitudes, conditions, .. } = self.features;
         (covariance.variance(row, amplitudes) / conditions.noise_weights[row] - known).max(0.0)

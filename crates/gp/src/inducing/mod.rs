@@ -18,9 +18,9 @@ use crate::left_out::LeftOutPredictions;
 use crate::left_out::level::{Conditions, climb, kappas, raised};
 use crate::rows::thinning::every_so_many;
 
-/// Rows on which levels of noise are compared, about; whole groups of them, at least three.
+/// Approximate number of rows on which noise levels are compared; whole groups of them, at least three.
 const COMPARED: usize = 8000;
-/// Rows whose features stay at hand from level to level, at most.
+/// Maximum number of rows whose features stay in memory for all noise levels.
 const AT_HAND: usize = 20_000;
 
 /// A model of all rows.
@@ -28,25 +28,25 @@ const AT_HAND: usize = 20_000;
 pub(crate) struct Induced {
     /// The inducing rows, (m).
     pub(crate) rows: Vec<usize>,
-    /// κ: the factor on σ² that predicts best, and σ² (S39), without the floor.
+    /// κ, the factor on σ² that predicts best, and σ² (S39), without the floor.
     pub(crate) kappa: f64,
     pub(crate) noise: f64,
     /// α of the inducing rows, (m, c).
     pub(crate) weights: DMatrix<f64>,
     /// L of K_mm.
     pub(crate) factor: Factor,
-    /// Of (S37).
+    /// The triangle of (S37).
     pub(crate) shrinkage: DMatrix<f64>,
-    /// Of all rows.
+    /// Predictions of all rows.
     pub(crate) left_out: LeftOutPredictions,
 }
 
 impl Induced {
-    /// At these amplitudes, σ² of the highest marginal likelihood, and the κ that predicts left-out groups best. None if there is no
-    /// factor.
+    /// At these amplitudes, σ² with the highest marginal likelihood, and the κ that best predicts left-out groups. `None` without a
+    /// Cholesky factor.
     ///
-    /// Costs 4 n m² operations and n m covariances for n rows and m inducing ones, and the memory of the features of the rows on which levels
-    /// are compared.
+    /// Costs 4 n m² operations and n m covariances for n rows and m inducing rows, and memory for the features of the rows on which noise
+    /// levels are compared.
     pub(crate) fn new(
         covariance: &impl Covariance,
         amplitudes: &[f64],
@@ -73,7 +73,7 @@ impl Induced {
             let noise = with_kappa(kappa);
             Some((kappa, level(noise, noise, &some, share * conditions.spread)?))
         };
-        // Of a group that alone says something nearly exactly, rounding leaves no prediction without itself.
+        // If a group is the only one that determines some direction nearly exactly, rounding leaves no prediction without it.
         let mut levels = kappas().map(at).skip_while(Option::is_none).peekable();
         let least = levels.peek()?.as_ref()?.0;
         let (best, compared) = climb(|_| levels.next().flatten(), |(_, left_out)| left_out)?;
@@ -81,7 +81,7 @@ impl Induced {
         let every = if some.len() == count { some } else { Groups::new(all) };
         let left_out = if known { compared } else { level(with_kappa(best), own, &every, conditions.spread)? };
         let left_out = left_out.at(&every.rows.concat());
-        // Where the least noise at which groups can be left out is the best, so would less be.
+        // If the least noise at which groups can be left out is the best, less noise would be as good.
         let kappa = if best == least { 1.0 } else { best };
         let weights = &spectrum.w * spectrum.coefficients(with_kappa(kappa));
         let shrinkage = spectrum.shrinkage(with_kappa(kappa), own);
@@ -89,7 +89,7 @@ impl Induced {
     }
 }
 
-/// Groups evenly spaced with about so many rows together, at least three; all if they have no more.
+/// Evenly spaced groups with about so many rows in total, at least three; all groups if they have no more.
 fn evenly<'a>(groups: &[&'a [usize]], rows: usize) -> Vec<&'a [usize]> {
     let count: usize = groups.iter().map(|rows| rows.len()).sum();
     let most = if count <= rows { groups.len() } else { (rows * groups.len() / count).max(3) };
@@ -109,11 +109,11 @@ mod tests {
     use crate::kernel::slope_covariance::SlopeCovariance;
     use crate::left_out::level::Level;
 
-    /// σ² below which few rows may say everything exactly, which nothing is compared with to 1e-6.
+    /// For σ² below this, few rows may determine everything exactly, which no reference matches to 1e-6.
     const NOISY: f64 = 1e-3;
     const BLOCKS: [Block; 3] = [Block::Linear, Block::Quadratic, Block::Potential(Shape::SquaredExponential, 0.5)];
 
-    /// Rows of groups, as a fit has them.
+    /// Random rows in groups, as in a fit.
     struct Drawn {
         z: DMatrix<f64>,
         n: DMatrix<f64>,
@@ -147,7 +147,7 @@ mod tests {
             SlopeCovariance { blocks: &BLOCKS, z: &self.z, n: &self.n }
         }
 
-        /// κσ² and σ² of every row.
+        /// κσ² and σ² for every row.
         fn noises(&self, induced: &Induced) -> (Vec<f64>, Vec<f64>) {
             let of = |noise: f64| self.noise_weights.iter().map(|weight| weight * (noise + NOISE_FLOOR)).collect();
             (of(raised(induced.noise, induced.kappa)), of(induced.noise))
@@ -167,8 +167,8 @@ mod tests {
         matrix.select_rows(rows).select_columns(columns)
     }
 
-    /// Mean, and covariance of its error, of rows with this prior and these covariances with others, whose targets are conditioned on with
-    /// other noise than they have.
+    /// Mean, and covariance of its error, at rows with this prior and these covariances with other rows, which are conditioned with another
+    /// noise than they have.
     fn predicted(
         prior: &DMatrix<f64>,
         across: &DMatrix<f64>,
@@ -188,7 +188,7 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(24))]
 
-        /// Where every row is an inducing row, the model is the one of all rows: mean, left-out predictions, what is explained.
+        /// If every row is an inducing row, the model equals that of all rows: mean, left-out predictions, explained variance.
         #[test]
         fn all_rows_as_inducing_rows_change_nothing(
             groups in prop::collection::vec(2usize..6, 4..7),
@@ -215,8 +215,8 @@ mod tests {
             prop_assert!(differ(&explained.tr_mul(&explained), &(&prior - error)) < 1e-6);
         }
 
-        /// With few inducing rows: the formulas (S34), (S36) as they are written, one model of the other groups for each group,
-        /// whether a group has fewer rows than there are inducing ones or more.
+        /// With few inducing rows: compares with (S34), (S36) evaluated literally, with one model of the other groups for each group, for
+        /// groups with fewer and with more rows than there are inducing rows.
         #[test]
         fn left_out_groups_are_those_of_a_model_without_them(
             groups in prop::collection::vec(1usize..14, 4..6),
@@ -252,7 +252,7 @@ mod tests {
             }
         }
 
-        /// (S39): the determinant and the quadratic form as they are written, but for what does not depend on σ².
+        /// (S39): compares with the literal determinant and quadratic form, up to terms independent of σ².
         #[test]
         fn the_marginal_likelihood_is_that_of_all_rows(
             groups in prop::collection::vec(1usize..9, 3..6),

@@ -1,4 +1,4 @@
-//! Which rows represent all: pivoted Cholesky (S34).
+//! Selects the inducing rows by pivoted Cholesky (S34).
 
 use linalg::transposed_product_of_rows;
 use nalgebra::DMatrix;
@@ -7,17 +7,18 @@ use rayon::prelude::*;
 use crate::kernel::covariance::Covariance;
 use crate::rows::thinning::scattered;
 
-/// Rows that are candidates, for each that is chosen.
+/// Number of candidates for each selected row.
 const CANDIDATES: usize = 8;
-/// Candidates whose variances are lowered together.
+/// Number of candidates whose variances are updated together.
 const TOGETHER: usize = 256;
-/// Share of the largest prior variance below which a row follows from those chosen.
+/// A row is linearly dependent on the selected ones if its variance is below this share of the largest prior variance.
 const DEPENDENT: f64 = 1e-13;
 
-/// In the order of the choice, at most `most` rows that represent all, the one with the largest variance given those before it first, ties to the earlier one.
+/// At most `most` rows that represent all, in the order of selection: each has the largest variance given the previous ones; ties go to the
+/// earlier row.
 ///
-/// Candidates are the first rows of trajectories, which are at the rim of what was recorded, as far as they are not more than
-/// half of all candidates, and one row of each of equally many stretches of the others. Costs most² times as many candidates.
+/// Candidates are the first rows of trajectories, which lie at the rim of the recorded region (up to half of all candidates), and one row
+/// from each of equally many stretches of the other rows. Costs most² times the number of candidates.
 pub(crate) fn pivots(
     covariance: &impl Covariance,
     amplitudes: &[f64],
@@ -28,7 +29,7 @@ pub(crate) fn pivots(
     let with = covariance.with(&candidates, amplitudes);
     let mut remaining: Vec<f64> = candidates.iter().map(|&row| covariance.variance(row, amplitudes)).collect();
     let least = DEPENDENT * remaining.iter().copied().fold(0.0, f64::max);
-    // Row by row the columns of the factor found so far, one column a candidate.
+    // The columns of the factor found so far, stored as rows; one column per candidate.
     let mut factor = DMatrix::zeros(most, candidates.len());
     let mut covariances = vec![0.0; candidates.len()];
     let mut chosen = Vec::new();
@@ -54,7 +55,7 @@ pub(crate) fn pivots(
     chosen
 }
 
-/// At most so many rows, in their order.
+/// At most `most` candidates, in the order of the rows.
 fn candidates(groups: &[Vec<usize>], most: usize) -> Vec<usize> {
     let count: usize = groups.iter().map(Vec::len).sum();
     if count <= most {

@@ -1,18 +1,18 @@
-//! The triangle of a QR factorisation of very many rows (S35): leaves of rows, then pairs of triangles.
+//! The triangle of a QR factorisation of very many rows (S35), computed from leaves of rows, then from pairs of triangles.
 
 use std::ops::Range;
 
 use linalg::qr_triangle;
 use nalgebra::DMatrix;
 
-/// Rows of a leaf, at least, and in numbers of columns, so that most work is done in leaves.
+/// Minimum number of rows of a leaf, absolute and as a multiple of the columns, so that most work is done in leaves.
 const LEAF: usize = 2048;
 const COLUMNS: usize = 4;
 
-/// R, (c, c), with RᵀR = AᵀA of a matrix A with `rows` rows and c `columns`, of which `part` gives rows. Takes 2 rows c² operations
-/// and, on each thread, the memory of a leaf and of a triangle for each level of the tree.
+/// R, (c, c), with RᵀR = AᵀA for a matrix A with `rows` rows and c `columns`, whose rows `part` returns. Takes 2 rows c² operations
+/// and, on each thread, memory for a leaf and for one triangle per level of the tree.
 ///
-/// The shape of the tree depends on the numbers of rows and columns alone, and so do the bits of R.
+/// The shape of the tree, and therefore the bits of R, depend only on the numbers of rows and columns.
 pub(crate) fn triangle(
     rows: usize,
     columns: usize,
@@ -46,7 +46,7 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(12))]
 
-        /// RᵀR = AᵀA for any number of rows, fewer than columns or several leaves; the same bits on one thread and on three.
+        /// RᵀR = AᵀA for any number of rows, from fewer than columns to several leaves; the same bits on one thread and on three.
         #[test]
         fn the_triangle_has_the_products_of_the_matrix(rows in 1usize..9000, columns in 1usize..12, seed in any::<u64>()) {
             let rng = &mut ChaCha8Rng::seed_from_u64(seed);

@@ -3,10 +3,10 @@ use serde::{Deserialize, Serialize};
 
 use crate::kernel::shape::{Radial, Shape, divergence_free_at};
 
-/// One term of the slope GP's prior with its amplitude: a covariance of slopes nᵀπ, and of the potential.
+/// One term of the slope GP's prior: a covariance of slopes nᵀπ, and of the potential.
 ///
-/// Distances are in scaled coordinates z of state and context, (n + p), directions (n) of the state alone: no context moves. A
-/// scale s stands for the length ℓ = s √(2(n + p)).
+/// Distances are in scaled coordinates z of state and context, (n + p). Directions, (n), concern the state only, because contexts
+/// do not move. A scale s stands for the length ℓ = s √(2(n + p)).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Block {
@@ -16,9 +16,9 @@ pub enum Block {
     Quadratic,
     /// Potentials of this shape and scale.
     Potential(Shape, f64),
-    /// Policies Sz with S skew: rotation without a potential. Not in one dimension.
+    /// Policies Sz with skew-symmetric S: rotation without a potential. Not in one dimension.
     Skew,
-    /// Policies without divergence at this scale, squared exponential. Not in one dimension.
+    /// Divergence-free policies at this scale, squared exponential. Not in one dimension.
     DivergenceFree(f64),
 }
 
@@ -51,8 +51,8 @@ impl Block {
         }
     }
 
-    /// Covariance of the policy at `z` and the slope along `n2` at `z2`: (S3) with `n` each unit vector in turn, (n); shapes as in
-    /// [`Block::slope_slope`].
+    /// Covariance of the policy at `z` with the slope along `n2` at `z2`: (S3) with each unit vector in turn as `n`, (n); shapes
+    /// as in [`Block::slope_slope`].
     pub fn policy_slope(
         self,
         z: DVectorView<'_, f64>,
@@ -72,8 +72,8 @@ impl Block {
         }
     }
 
-    /// (S4): covariance of the potential at `z`, in scaled coordinates, and the slope along `n2` at `z2`; none if there
-    /// is no potential. Shapes as in [`Block::slope_slope`].
+    /// (S4): covariance of the potential at `z`, in scaled coordinates, with the slope along `n2` at `z2`; `None` without a
+    /// potential. Shapes as in [`Block::slope_slope`].
     pub fn potential_slope(
         self,
         z: DVectorView<'_, f64>,
@@ -92,7 +92,8 @@ impl Block {
         }
     }
 
-    /// (S5): covariance of the potential at `z` and at `z2`, (n + p) each, in scaled coordinates; none if there is no potential.
+    /// (S5): covariance of the potential at `z` with that at `z2`, (n + p) each, in scaled coordinates; `None` without a
+    /// potential.
     pub fn potential_potential(self, z: DVectorView<'_, f64>, z2: DVectorView<'_, f64>) -> Option<f64> {
         match self {
             Block::Linear => Some(z.dot(&z2)),
@@ -105,7 +106,7 @@ impl Block {
         }
     }
 
-    /// x − x2, (n), g and h of a block that falls with distance.
+    /// x − x2, (n), g and h of a block that decays with distance.
     fn falling(self, z: DVectorView<'_, f64>, z2: DVectorView<'_, f64>, dim: usize) -> (DVector<f64>, f64, f64) {
         let squared = (z - z2).norm_squared();
         let apart = z.rows(0, dim) - z2.rows(0, dim);

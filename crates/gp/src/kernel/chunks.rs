@@ -1,15 +1,15 @@
-//! Rows side by side, so that one row meets many in vector registers.
+//! Rows side by side, so that one row is combined with many in vector registers.
 
 use nalgebra::DMatrix;
 
-/// Rows that share a place on the stack.
+/// Number of rows in a chunk, which fits on the stack.
 pub(crate) const CHUNK: usize = 64;
 
 /// One number for each row of a chunk.
 pub(crate) type Chunk = [f64; CHUNK];
 
-/// The columns of a matrix (n, M) in chunks: for each chunk and each dimension one number a column. The last chunk is
-/// filled up with zeros.
+/// The columns of a matrix (n, M) in chunks: for each chunk and each dimension, one number per column. The last chunk
+/// is padded with zeros.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Chunks {
     numbers: Vec<Chunk>,
@@ -32,7 +32,7 @@ impl Chunks {
         self.numbers.len() / self.dim
     }
 
-    /// One chunk: for each dimension a number for each row.
+    /// One chunk: for each dimension, one number per row.
     pub(crate) fn get(&self, chunk: usize) -> &[Chunk] {
         &self.numbers[chunk * self.dim..(chunk + 1) * self.dim]
     }

@@ -5,23 +5,23 @@ pub(crate) trait Covariance: Sync {
     /// Number of blocks B.
     fn n_blocks(&self) -> usize;
 
-    /// The covariance matrix of every block alone among these rows; lower triangles.
+    /// The covariance matrix of each block alone among these rows; lower triangles.
     fn each_among(&self, rows: &[usize]) -> Vec<DMatrix<f64>>;
 
     /// Σ a_b K_b among all rows; lower triangle.
     fn sum(&self, amplitudes: &[f64]) -> DMatrix<f64>;
 
-    /// Fills in Σ a_b K_b of a row with each of some rows, (m).
+    /// Writes Σ a_b K_b of a row with each of some rows, (m).
     fn with<'a>(&'a self, rows: &[usize], amplitudes: &'a [f64]) -> impl Fn(usize, &mut [f64]) + Sync + 'a;
 
     /// Σ a_b K_b of a row with itself.
     fn variance(&self, row: usize, amplitudes: &[f64]) -> f64;
 }
 
-/// Least noise variance: σ² + this is what (S6) adds.
+/// Minimum noise variance, which (S6) adds to σ².
 pub(crate) const NOISE_FLOOR: f64 = 1e-10;
 
-/// Adds (σ² + 1e-10) diag(D), then 1e-12 of the mean of the diagonal: the rest of (S6).
+/// Adds (σ² + 1e-10) diag(D), then 1e-12 times the mean of the diagonal: the remaining terms of (S6).
 pub(crate) fn add_noise(matrix: &mut DMatrix<f64>, noise: f64, noise_weights: impl Iterator<Item = f64>) {
     let count = matrix.nrows();
     for (i, weight) in noise_weights.enumerate() {
@@ -41,7 +41,7 @@ pub(crate) fn among(covariance: &impl Covariance, rows: &[usize], amplitudes: &[
     matrix
 }
 
-/// Share of its mean diagonal that is added to a covariance among inducing rows, so that it has a Cholesky factor.
+/// Share of the mean diagonal that is added to a covariance among inducing rows, so that it has a Cholesky factor.
 const JITTER: f64 = 1e-12;
 
 /// K_mm of (S34).

@@ -10,7 +10,7 @@ use crate::kernel::covariance::Covariance;
 use crate::kernel::family::Family;
 use crate::kernel::shape::{Radial, Shape};
 
-/// One term of the direct GP's prior, the same for every component of the velocity. Distances are in scaled coordinates
+/// One term of the direct GP's prior, the same for each component of the velocity. Distances are in scaled coordinates
 /// z; a scale s stands for the length s √(2n).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -41,7 +41,7 @@ impl DirectBlock {
 }
 
 impl Family {
-    /// Its blocks in the direct GP: constant, linear, quadratic, and its shape at five scales.
+    /// The family's blocks in the direct GP: constant, linear, quadratic, and its shape at five scales.
     pub fn direct_blocks(self) -> Vec<DirectBlock> {
         let scales = match self {
             Family::Smooth => [0.125, 0.25, 0.5, 1.0, 2.0],
@@ -52,7 +52,7 @@ impl Family {
     }
 }
 
-/// Covariances of a velocity's component at scaled states `z`, (n, M).
+/// Covariances of a velocity component at scaled states `z`, (n, M).
 #[derive(Debug)]
 pub(crate) struct DirectCovariance<'a> {
     pub(crate) blocks: &'a [DirectBlock],
@@ -124,7 +124,7 @@ impl WithSimd for CovariancesWith<'_> {
     }
 }
 
-/// The same; `z` gives one coordinate after the other.
+/// As [`covariances_with`]; `z` returns one coordinate at a time.
 #[inline(always)]
 pub(crate) fn combined(
     z: impl Fn(usize) -> f64,
@@ -155,7 +155,7 @@ pub(crate) fn combined(
     values
 }
 
-/// Factors of 1, of zᵀz' and of its square.
+/// Factors of 1, of zᵀz' and of (zᵀz')².
 #[inline(always)]
 pub(crate) fn trend(blocks: &[DirectBlock], amplitudes: &[f64], dim: usize) -> [f64; 3] {
     let mut factors = [0.0; 3];

@@ -5,16 +5,16 @@ use lanes::{Number, exp};
 use crate::kernel::shape::Shape;
 use crate::kernel::term::{Exponential, Fall, Step, Term, steps};
 
-/// A sum of terms that fall with distance, in the form in which predictions evaluate it: one exponential and squarings where lengths
-/// are powers of two apart, instead of an exponential a term.
+/// A sum of terms that decay with distance, in the form in which predictions evaluate it: one exponential, and squarings for lengths
+/// that differ by powers of two, instead of one exponential per term.
 ///
-/// The fit computes each term by itself; both agree to 1e-13 of the sum of the terms' magnitudes.
+/// The fit computes each term separately; both results agree to 1e-13 of the sum of the terms' magnitudes.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Falling {
     series: Vec<Series>,
 }
 
-/// The terms that share an exponential e^{rate x}, from the longest to the shortest: x is the distance ρ, or its square in
+/// The terms that share an exponential e^{rate x}, from the longest to the shortest; x is the distance ρ, or its square for
 /// [`Exponential::Gaussian`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct Series {
@@ -25,28 +25,29 @@ pub struct Series {
     has_linear: bool,
 }
 
-/// A term e (`one` + `linear` t + `quadratic` t²), and e `bend`, where e is its exponential; t is the distance, or in
+/// A term e (`one` + `linear` t + `quadratic` t²), and e `bend`, where e is its exponential. t is the distance, or for
 /// [`Exponential::Gaussian`] the squared distance along the state, without the context.
 ///
-/// In a slope covariance the sum of the first is g of (S3), the sum of the second h, in [`Exponential::Matern32`] times the distance.
+/// In a slope covariance the sum of the first is g of (S3), the sum of the second h, multiplied by the distance for
+/// [`Exponential::Matern32`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Summand {
-    /// Where the exponential is computed; none where it is the one before, squared.
+    /// The rate, if the exponential is computed; `None` if it is the previous one, squared.
     pub rate: Option<f64>,
-    /// How many times it is squared.
+    /// Number of times that the exponential is squared.
     pub squarings: u32,
-    /// In scaled units, as all factors.
+    /// Constant factor, in scaled units like all factors.
     pub one: f64,
-    /// Times t.
+    /// Factor of t.
     pub linear: f64,
-    /// Times t²; 0 in slope covariances.
+    /// Factor of t²; 0 in slope covariances.
     pub quadratic: f64,
-    /// Of h; 0 in other covariances.
+    /// Factor of e in h; 0 in other covariances.
     pub bend: f64,
 }
 
 impl Falling {
-    /// g and h of (S3), the state having `moving_dim` dimensions.
+    /// g and h of (S3); the state has `moving_dim` dimensions.
     pub(crate) fn of_slopes(terms: &[Term], moving_dim: usize) -> Self {
         Falling::new(terms, |Term { fall, length, amplitude }| match fall {
             Fall::Shape(Shape::SquaredExponential) => [amplitude, 0.0, 0.0, amplitude / (length * length)],
@@ -63,7 +64,7 @@ impl Falling {
         })
     }
 
-    /// The covariance of a function itself.
+    /// The covariance of the function values themselves.
     pub(crate) fn of_values(terms: &[Term]) -> Self {
         Falling::new(terms, |Term { fall, length, amplitude }| match fall {
             Fall::Shape(Shape::SquaredExponential) | Fall::DivergenceFree => [amplitude, 0.0, 0.0, 0.0],
@@ -98,12 +99,12 @@ impl Falling {
         Falling { series }
     }
 
-    /// The series, one for each exponential in it.
+    /// The series, one for each distinct exponential.
     pub fn series(&self) -> &[Series] {
         &self.series
     }
 
-    /// g and h of (S3) at squared distances, of which `moving` lie along the state.
+    /// g and h of (S3) at squared distances, whose part along the state is `moving`.
     #[inline(always)]
     pub(crate) fn slopes<T: Number, const U: usize>(&self, squared: [T; U], moving: [T; U]) -> ([T; U], [T; U]) {
         let zero = squared[0].like(0.0);
@@ -125,7 +126,7 @@ impl Falling {
             }
             for u in 0..U {
                 h[u] += if series.exponential == Exponential::Matern32 {
-                    // At distance 0 the product h β_i β_j is 0 whatever h is.
+                    // At distance 0 the product h β_i β_j is 0 for any h.
                     bends[u] * x[u].larger(zero.like(1e-12)).recip()
                 } else {
                     bends[u]
@@ -161,7 +162,7 @@ impl Falling {
 }
 
 impl Series {
-    /// What the exponential falls with, and t.
+    /// The argument of the exponential, and t.
     #[inline(always)]
     fn arguments<T: Number, const U: usize>(&self, squared: [T; U], moving: [T; U]) -> ([T; U], [T; U]) {
         if self.exponential == Exponential::Gaussian {
@@ -173,7 +174,7 @@ impl Series {
 }
 
 impl Summand {
-    /// Replaces the exponentials of the summand before by its own, at `x`.
+    /// Replaces the exponentials of the previous summand by those of this one, at `x`.
     #[inline(always)]
     fn next<T: Number, const U: usize>(&self, e: &mut [T; U], x: [T; U]) {
         match self.rate {
@@ -204,7 +205,7 @@ mod tests {
         prop::sample::select([Fall::DivergenceFree].into_iter().chain(shapes.map(Fall::Shape)).collect::<Vec<_>>())
     }
 
-    /// Lengths a power of two apart, and others.
+    /// Terms with lengths that differ by powers of two, and others.
     fn terms() -> impl Strategy<Value = Vec<Term>> {
         let lengths = prop_oneof![(-4..4_i32).prop_map(|k| 1.7 * 2.0_f64.powi(k)), 0.1..10.0];
         let term = (falls(), lengths, 1e-3..10.0);
@@ -215,7 +216,7 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(5_000))]
 
-        /// Each term by itself, as the fit computes it.
+        /// Each term computed separately, as in the fit.
         #[test]
         fn it_is_the_sum_of_its_terms(
             terms in terms(), dim in 1_usize..8, squared in prop_oneof![Just(0.0), 0.0..1e-6, 0.0..50.0, 0.0..1e6],
@@ -238,7 +239,7 @@ mod tests {
                 g += term.amplitude * own_g;
                 h += term.amplitude * own_h;
                 value += term.amplitude * own_value;
-                // An exponent is rounded in proportion to its size.
+                // An exponent has a rounding error in proportion to its size.
                 let rounding = 1.0 - 0.01 * own_value.clamp(f64::MIN_POSITIVE, 1.0).ln();
                 scale[0] += rounding * (term.amplitude * own_g).abs() + if term.fall == Fall::DivergenceFree {
                     rounding * term.amplitude * own_value * (1.0 + moving / term.length.powi(2))
@@ -255,7 +256,7 @@ mod tests {
             }
         }
 
-        /// An exponential a kind and six squarings at most, however many terms are asked for.
+        /// One exponential per kind and at most six squarings, for any number of terms.
         #[test]
         fn steps_are_all_terms_and_few_exponentials(count in 1..9_i32, fall in falls(), base in 0.1..10.0) {
             let term = |k: i32| Term { fall, length: base * 2.0_f64.powi(k), amplitude: 1.0 + f64::from(k) };

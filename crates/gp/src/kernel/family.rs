@@ -5,35 +5,35 @@ use serde::{Deserialize, Serialize};
 use crate::kernel::block::Block;
 use crate::kernel::shape::Shape;
 
-/// The smoothness of the policies considered. The marginal likelihood sets the amplitudes within a family; held-out
+/// The smoothness of the policies in the prior. The marginal likelihood determines the amplitudes within a family; held-out
 /// prediction selects the family.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Family {
-    /// Squared exponential: for policies without an edge.
+    /// Squared exponential: for policies without kinks.
     Smooth,
-    /// Matérn 5/2: for policies that turn quickly, and for noisy ones.
+    /// Matérn 5/2: for policies that change quickly, and for noisy ones.
     Medium,
-    /// Matérn 3/2: for policies that may jump, that is potentials with kinks.
+    /// Matérn 3/2: for policies that may jump, that is, potentials with kinks.
     Rough,
 }
 
-/// Whether a potential may have a trend beside its shapes.
+/// Whether a potential may have a trend in addition to its shapes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Trend {
-    /// A linear and a quadratic potential are in every family.
+    /// Every family contains a linear and a quadratic potential.
     #[default]
     Quadratic,
-    /// Shapes alone, to measure the error where the family does not contain the truth.
+    /// Shapes alone, to measure the error if the family does not contain the truth.
     None,
 }
 
 impl Family {
-    /// All of them, in the order in which a tie is decided.
+    /// All families, in the order in which ties are decided.
     pub const ALL: [Family; 3] = [Family::Smooth, Family::Medium, Family::Rough];
 
-    /// Its shape.
+    /// The family's shape.
     pub fn shape(self) -> Shape {
         match self {
             Family::Smooth => Shape::SquaredExponential,
@@ -42,7 +42,7 @@ impl Family {
         }
     }
 
-    /// Its blocks in the slope GP: the trend, then one shape at four scales.
+    /// The family's blocks in the slope GP: the trend, then one shape at four scales.
     pub fn blocks(self, trend: Trend) -> Vec<Block> {
         let scales = match self {
             Family::Smooth => [0.25, 0.5, 1.0, 2.0],
@@ -55,8 +55,8 @@ impl Family {
         trend.iter().copied().chain(scales.map(|scale| Block::Potential(self.shape(), scale))).collect()
     }
 
-    /// Amplitudes of `blocks`, (B), from which a family is searched a second time: long scales alone. Only (S8) of `smooth`
-    /// has a minimum there that the first search misses.
+    /// Amplitudes of `blocks`, (B), for the second search of a family: long scales alone. Only (S8) of `smooth` has a
+    /// minimum there that the first search misses.
     pub(crate) fn second_start(self, blocks: &[Block]) -> Option<Vec<f64>> {
         let amplitude = |block: &Block| match block {
             Block::Potential(_, scale) | Block::DivergenceFree(scale) if *scale >= 1.0 => 1.0,

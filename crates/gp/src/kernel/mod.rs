@@ -1,4 +1,4 @@
-//! Priors: families of blocks, their covariances and the factors of these.
+//! Priors: families of blocks, their covariances and the factors of the covariances.
 
 pub(crate) mod block;
 pub(crate) mod chunks;

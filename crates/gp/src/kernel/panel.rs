@@ -1,17 +1,17 @@
 use lanes::{LANES, Lanes};
 use nalgebra::DMatrix;
 
-/// Columns that stand side by side.
+/// Number of columns stored side by side.
 pub(crate) const ABREAST: usize = 2 * LANES;
 
-/// One row of [`ABREAST`] columns, at a cache line.
+/// One row of [`ABREAST`] columns, aligned to a cache line.
 #[derive(Debug, Clone, Copy)]
 #[repr(C, align(64))]
 pub(crate) struct PanelRow(pub(crate) [Lanes; 2]);
 
-/// Columns of a matrix (M, k), each in a lane of its own: what becomes of one has the same bits whatever stands beside it.
+/// Columns of a matrix (M, k), each in a separate lane: results for one column have the same bits whatever the others are.
 ///
-/// Its height is M, rounded up to whole groups; the rows beyond M are 0.
+/// The height is M, rounded up to whole groups; the rows beyond M are 0.
 #[derive(Debug, Clone)]
 pub(crate) struct Panel {
     numbers: Vec<PanelRow>,
@@ -46,12 +46,12 @@ impl Panel {
         }
     }
 
-    /// Makes all of it 0.
+    /// Sets everything to 0.
     pub(crate) fn clear(&mut self) {
         self.numbers.fill(PanelRow([[0.0; LANES]; 2]));
     }
 
-    /// [`ABREAST`] columns at a time, and how many groups of them are in use.
+    /// [`ABREAST`] columns at a time, and the number of groups in use.
     pub(crate) fn abreast(&mut self) -> impl Iterator<Item = (&mut [PanelRow], usize)> {
         let (height, columns) = (self.height(), self.columns);
         let parts = self.numbers.chunks_exact_mut(height).enumerate();

@@ -4,27 +4,28 @@ use lanes::{LANES, Lanes, Register};
 use nalgebra::DMatrix;
 use pulp::{Arch, Simd, WithSimd};
 
-/// Groups of rows that stand together.
+/// Number of groups of rows stored together.
 pub(crate) const GROUPS: usize = 4;
-/// Rows that stand together.
+/// Number of rows stored together.
 pub(crate) const TOGETHER: usize = GROUPS * LANES;
 
-/// One number of each of [`TOGETHER`] rows, at cache lines: a register loaded across the end of one takes twice as long.
+/// One number for each of [`TOGETHER`] rows, aligned to cache lines: loading a register across the end of a line takes twice as
+/// long.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(C, align(64))]
 pub(crate) struct Abreast([Lanes; GROUPS]);
 
-/// What a prediction needs of the rows, in its order: for [`TOGETHER`] rows all their numbers, then for the next. What is missing
-/// at the end is 0.
+/// The data of the rows that a prediction reads, in the order in which it reads them: all numbers of [`TOGETHER`] rows, then
+/// those of the next. The end is padded with zeros.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct RowTable {
     numbers: Vec<Abreast>,
-    /// Numbers of a row.
+    /// Number of values per row.
     width: usize,
 }
 
 impl RowTable {
-    /// A row has the numbers of a column of each part, (n, M).
+    /// A row consists of one column of each part, (n, M).
     pub(crate) fn new(parts: &[&DMatrix<f64>]) -> Self {
         let (count, width) = (parts[0].ncols(), parts.iter().map(|part| part.nrows()).sum());
         let mut numbers = vec![Abreast([[0.0; LANES]; GROUPS]); count.div_ceil(TOGETHER) * width];
@@ -46,14 +47,14 @@ impl RowTable {
 }
 
 impl Abreast {
-    /// Register `part` of U groups from `first` on.
+    /// Loads register `part` of U groups, from `first` on.
     #[inline(always)]
     pub(crate) fn load<S: Simd, const U: usize>(&self, simd: S, first: usize, part: usize) -> [Register<S>; U] {
         std::array::from_fn(|u| Register::load(simd, &self.0[first + u], part))
     }
 }
 
-/// Where registers of U groups begin that hold [`TOGETHER`] rows.
+/// First groups of the registers of U groups that together hold [`TOGETHER`] rows.
 #[inline(always)]
 pub(crate) fn firsts<const U: usize>() -> impl Iterator<Item = usize> {
     (0..GROUPS).step_by(U)
@@ -63,11 +64,11 @@ pub(crate) fn firsts<const U: usize>() -> impl Iterator<Item = usize> {
 pub(crate) trait OverRows {
     type Output;
 
-    /// Must be inlined always: what is called is compiled for the oldest machine.
+    /// Must always be inlined, because functions that are called are compiled for the oldest processor.
     fn run<S: Simd, const U: usize>(self, simd: S) -> Self::Output;
 }
 
-/// The sum with the widest registers and as many groups at a time as they hold.
+/// Runs the sum with the widest registers, and with as many groups at a time as they hold.
 pub(crate) fn over_rows<T: OverRows>(sum: T) -> T::Output {
     Arch::new().dispatch(InRegisters(sum))
 }

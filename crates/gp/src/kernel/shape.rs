@@ -5,19 +5,19 @@ use serde::{Deserialize, Serialize};
 
 use crate::kernel::chunks::{CHUNK, Chunk};
 
-/// How a covariance falls with distance.
+/// Decay of a covariance with distance.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Shape {
-    /// e^{−ρ²/2ℓ²}: for policies without an edge.
+    /// e^{−ρ²/2ℓ²}: for policies without kinks.
     SquaredExponential,
     /// Matérn 5/2: for policies whose slope may change quickly.
     Matern52,
-    /// Matérn 3/2: for policies that may jump, that is potentials with kinks.
+    /// Matérn 3/2: for policies that may jump, that is, potentials with kinks.
     Matern32,
 }
 
-/// A shape at a length ℓ.
+/// A shape with a length ℓ.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Radial {
     pub(crate) shape: Shape,
@@ -63,13 +63,13 @@ impl Slopes for Matern32 {
         let distance = squared_distance.sqrt();
         let rate = 3.0_f64.sqrt() / self.0;
         let g = exp(-rate * distance);
-        // At distance 0 the product h β_i β_j is 0 whatever h is.
+        // At distance 0 the product h β_i β_j is 0 for any h.
         (g, rate * g / if distance > 1e-12 { distance } else { 1e-12 })
     }
 }
 
 impl DivergenceFree {
-    /// g and h at one squared distance, of which `moving` lies along the state and the rest along the context.
+    /// g and h at one squared distance; `moving` is its part along the state, the rest lies along the context.
     #[inline(always)]
     fn at(self, squared_distance: f64, moving: f64) -> (f64, f64) {
         let DivergenceFree(length, dim) = self;
@@ -108,7 +108,7 @@ impl Radial {
         }
     }
 
-    /// The covariance of a function itself, 1 at distance 0.
+    /// The covariance of the function values themselves, 1 at distance 0.
     #[inline(always)]
     pub(crate) fn value_at(self, squared_distance: f64) -> f64 {
         match self.shape {
@@ -124,7 +124,7 @@ impl Radial {
         }
     }
 
-    /// Variance of the potential whose slopes have variance 1: (S5) at distance 0.
+    /// Variance of the potential if its slopes have variance 1: (S5) at distance 0.
     pub(crate) fn potential_variance(self) -> f64 {
         let squared = self.length * self.length;
         match self.shape {
@@ -136,7 +136,7 @@ impl Radial {
 
     #[inline(always)]
     pub(crate) fn add_values(self, amplitude: f64, squared_distances: &Chunk, values: &mut Chunk) {
-        // One loop a shape: a branch inside would keep it from vector registers.
+        // One loop per shape, because a branch inside would prevent vectorisation.
         match self.shape {
             Shape::SquaredExponential => add_each(amplitude, squared_distances, values, |squared| {
                 Radial { shape: Shape::SquaredExponential, ..self }.value_at(squared)
@@ -158,7 +158,8 @@ fn add_each(amplitude: f64, squared_distances: &Chunk, values: &mut Chunk, value
     }
 }
 
-/// g and h of the divergence-free block in `dim` dimensions, at a squared distance of which `moving` lies along them.
+/// g and h of the divergence-free block in `dim` dimensions, at a squared distance whose part along the state is
+/// `moving`.
 pub(crate) fn divergence_free_at((length, dim): (f64, usize), squared_distance: f64, moving: f64) -> (f64, f64) {
     DivergenceFree(length, dim as f64).at(squared_distance, moving)
 }

@@ -8,7 +8,7 @@ use crate::kernel::chunks::{CHUNK, Chunk, Chunks};
 use crate::kernel::covariance::Covariance;
 use crate::kernel::shape::{Radial, Shape, add_divergence_free};
 
-/// Covariances (S3) of slopes: of directions `n`, (n, M), at scaled states and contexts `z`, (n + p, M).
+/// Covariances (S3) of slopes along the directions `n`, (n, M), at scaled states and contexts `z`, (n + p, M).
 #[derive(Debug)]
 pub(crate) struct SlopeCovariance<'a> {
     pub(crate) blocks: &'a [Block],
@@ -67,10 +67,10 @@ impl Covariance for SlopeCovariance<'_> {
     }
 }
 
-/// Loss of a Matérn 3/2 block on the diagonal by a squared distance |z|² − 2zᵀz + |z|² that rounding leaves a little
-/// above 0, its product being fused: g falls with the distance itself, so that 1e-16 becomes 1e-8.
+/// Loss on the diagonal of a Matérn 3/2 block: with fused products, rounding leaves the squared distance |z|² − 2zᵀz + |z|²
+/// slightly above 0, and g decays with the distance itself, so that 1e-16 becomes 1e-8.
 ///
-/// The reference values have it; other shapes fall with the square and are not touched.
+/// The reference values contain this loss. Other shapes decay with the square and are not affected.
 fn own_rounding(z: &[f64], blocks: &[Block], amplitudes: &[f64]) -> f64 {
     let plain: f64 = z.iter().map(|z| z * z).sum();
     let fused = z.iter().fold(0.0, |sum: f64, z| z.mul_add(*z, sum));
@@ -127,7 +127,7 @@ impl WithSimd for SlopesWith<'_> {
                 zn[lane] += z * n2;
             }
         }
-        // Rotation is of the state alone.
+        // Rotation concerns the state only.
         let (moving, xx) = (squared, zz);
         let dim = self.n.len();
         for (&z, states) in self.z[dim..].iter().zip(&self.states[dim..]) {
@@ -151,7 +151,8 @@ impl WithSimd for SlopesWith<'_> {
     }
 }
 
-/// Σ a_b g_b and Σ a_b h_b over the blocks that fall with distance: of state and context, and of the state alone, (n) of (n + p).
+/// Σ a_b g_b and Σ a_b h_b over the blocks that decay with distance, for state and context, and for the state alone, (n) of (n +
+/// p).
 #[inline(always)]
 pub(crate) fn falling(
     blocks: &[Block],

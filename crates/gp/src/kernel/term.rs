@@ -2,38 +2,38 @@ use crate::kernel::block::{Block, length};
 use crate::kernel::direct_block::DirectBlock;
 use crate::kernel::shape::Shape;
 
-/// A term that falls with distance.
+/// A term that decays with distance.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Term {
-    /// How it falls.
+    /// The kind of decay.
     pub fall: Fall,
     /// ℓ, in scaled coordinates.
     pub length: f64,
-    /// Of the block.
+    /// Amplitude of its block.
     pub amplitude: f64,
 }
 
-/// How a term falls with distance.
+/// Decay of a term with distance.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Fall {
-    /// As a potential or velocity of this shape.
+    /// Like a potential or velocity of this shape.
     Shape(Shape),
-    /// As [`Block::DivergenceFree`].
+    /// Like [`Block::DivergenceFree`].
     DivergenceFree,
 }
 
-/// A term of a sum, and how its exponential follows from that of the term before it.
+/// A term of a sum, and the relation of its exponential to the previous term's.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Step {
     pub(crate) term: Term,
-    /// The exponential of the term before, squared so many times, is this one's; none where it must be computed.
+    /// Number of squarings of the previous exponential that give this one; `None` if it must be computed.
     pub(crate) squarings: Option<u32>,
 }
 
-/// Squarings after one exponential: each doubles its relative error, 64 times 1e-16 in all.
+/// Maximum number of squarings after one exponential. Each doubles the relative error, to 64 times 1e-16 in all.
 const MOST_SQUARINGS: u32 = 6;
 
-/// The exponential in a term.
+/// The exponential of a term.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Exponential {
     /// e^{−ρ²/2ℓ²}.
@@ -45,7 +45,7 @@ pub enum Exponential {
 }
 
 impl Fall {
-    /// The exponential in it.
+    /// The exponential of this decay.
     pub(crate) fn exponential(self) -> Exponential {
         match self {
             Fall::Shape(Shape::SquaredExponential) | Fall::DivergenceFree => Exponential::Gaussian,
@@ -56,7 +56,7 @@ impl Fall {
 }
 
 impl Term {
-    /// The terms of the slope GP with an amplitude above 0, in `dim` dimensions of state and context.
+    /// The terms of the slope GP with positive amplitudes, in `dim` dimensions of state and context.
     pub(crate) fn of_slopes(blocks: &[Block], amplitudes: &[f64], dim: usize) -> Vec<Term> {
         terms(blocks, amplitudes, dim, |block| match block {
             Block::Potential(shape, scale) => Some((Fall::Shape(shape), scale)),
@@ -65,7 +65,7 @@ impl Term {
         })
     }
 
-    /// Those of the direct GP.
+    /// The terms of the direct GP.
     pub(crate) fn of_velocities(blocks: &[DirectBlock], amplitudes: &[f64], dim: usize) -> Vec<Term> {
         terms(blocks, amplitudes, dim, |block| match block {
             DirectBlock::Shape(shape, scale) => Some((Fall::Shape(shape), scale)),
@@ -73,8 +73,8 @@ impl Term {
         })
     }
 
-    /// Squarings that turn the exponential of a `longer` term into that of this one; none if their lengths are no power of
-    /// two apart or they have not the same exponential.
+    /// Number of squarings that turn the exponential of a `longer` term into that of this one; `None` if their lengths do
+    /// not differ by a power of two, or their exponentials are of different kinds.
     fn squarings_after(self, longer: Term) -> Option<u32> {
         let exponential = self.fall.exponential();
         let ratio = longer.length / self.length;
@@ -84,8 +84,8 @@ impl Term {
     }
 }
 
-/// Terms from the longest to the shortest of each exponential, with few exponentials: one and squarings where lengths are
-/// powers of two apart.
+/// Orders the terms of each exponential from the longest to the shortest, with few exponentials: one, and squarings for
+/// lengths that differ by powers of two.
 pub(crate) fn steps(terms: &[Term]) -> Vec<Step> {
     let mut ordered = Vec::with_capacity(terms.len());
     for exponential in [Exponential::Gaussian, Exponential::Matern52, Exponential::Matern32] {

@@ -1,7 +1,7 @@
-//! Triangles in tiles of eight rows, column by column, as they meet the columns of a [`Panel`].
+//! Triangles in tiles of eight rows, column by column, as applied to the columns of a [`Panel`].
 //!
-//! A panel's columns stand in lanes, so that the sums over a row of the triangle have one order whatever the width of registers and
-//! the number of columns: a column alone gets the same bits as among others.
+//! A panel's columns are in lanes, so that the sums over a row of the triangle have the same order for every register width and
+//! number of columns: a single column gets the same bits as among others.
 
 #![allow(clippy::inline_always, reason = "vector instructions reach only what is inlined")]
 
@@ -32,7 +32,7 @@ impl From<Factor> for InverseOfLower {
 }
 
 impl InverseOfLower {
-    /// Of a square matrix, of which the lower triangle is read.
+    /// From a square matrix, whose lower triangle is read.
     pub(crate) fn new(lower: &DMatrix<f64>) -> Self {
         let len = lower.nrows();
         let entry = |row: usize, column: usize| match () {
@@ -60,7 +60,7 @@ impl InverseOfLower {
 }
 
 impl Upper {
-    /// Of a square matrix, of which the upper triangle is read.
+    /// From a square matrix, whose upper triangle is read.
     pub(crate) fn new(upper: &DMatrix<f64>) -> Self {
         let len = upper.nrows();
         let entry = |row: usize, column: usize| if row <= column && column < len { upper[(row, column)] } else { 0.0 };
@@ -69,12 +69,12 @@ impl Upper {
         Upper { tiles: (0..groups_of(len)).flat_map(tile).map(lanes).collect(), len }
     }
 
-    /// Entries column after column, each down to the diagonal.
+    /// Entries column by column, each down to the diagonal.
     pub(crate) fn entries(&self) -> impl Iterator<Item = f64> {
         let height = self.len.next_multiple_of(LANES);
         let entry = move |row: usize, column: usize| {
             let (tile, first) = (row / LANES, row / LANES * LANES);
-            // Tiles before have height, height − 8, … columns.
+            // The previous tiles have height, height − 8, … columns.
             let before = tile * height - LANES * tile * tile.saturating_sub(1) / 2;
             self.tiles[before + column - first][row % LANES]
         };
@@ -106,14 +106,15 @@ impl Upper {
     }
 }
 
-/// The last eight of some rows of a panel, less what the rows before explain, through the diagonal block.
+/// Solves for the last eight of some rows of a panel: subtracts the contribution of the previous rows, then applies the diagonal
+/// block.
 struct Substitute<'a> {
     tile: &'a [Lanes],
     rows: &'a mut [PanelRow],
     groups: usize,
 }
 
-/// The first eight of some rows of a panel become a tile times the rows.
+/// Replaces the first eight of some rows of a panel by a tile times the rows.
 struct Multiply<'a> {
     tile: &'a [Lanes],
     rows: &'a mut [PanelRow],
@@ -140,7 +141,7 @@ impl WithSimd for Substitute<'_> {
     }
 }
 
-/// One register of V groups from `first` on.
+/// One register of V groups, from `first` on.
 #[inline(always)]
 fn substitute<S: Simd, const V: usize>(
     simd: S,
@@ -191,7 +192,7 @@ fn multiply<S: Simd, const V: usize>(simd: S, tile: &[Lanes], rows: &mut [PanelR
     store(sums, rows, first, part);
 }
 
-/// Adds a row of the panel times its entry of each row of the tile.
+/// Adds a row of the panel times its entry in each row of the tile.
 #[inline(always)]
 fn add_row<S: Simd, const V: usize>(
     simd: S,
@@ -248,7 +249,7 @@ mod tests {
             prop_assert_eq!(upper.entries().collect::<Vec<_>>(), (0..len).flat_map(column).collect::<Vec<_>>());
         }
 
-        /// Whatever stands beside it, and wherever it stands.
+        /// The result for a column does not depend on its position or on its neighbours.
         #[test]
         fn a_column_alone_has_the_same_bits(len in 1_usize..70, columns in 1_usize..40, at in 0_usize..40, seed in -9.0..9.0) {
             let (b, at) = (drawn(len, columns, seed), at % columns);

@@ -1,21 +1,22 @@
-//! What the rows of a model say of a function: the part of its prior variance that they explain.
+//! The share of a function's prior variance that the rows of a model explain.
 
 use crate::kernel::covariance::{Covariance, add_noise, among, jittered};
 use crate::kernel::lazy_factor::LazyFactor;
 use crate::kernel::panel::Panel;
 use crate::kernel::triangle::Upper;
 
-/// Turns covariances B of a function with a model's rows into numbers whose squares the rows explain of its variance.
+/// Turns covariances B of a function with a model's rows into numbers whose squares sum to the explained variance.
 #[derive(Debug, Clone)]
 pub(crate) enum Whitening {
-    /// L⁻¹B with LLᵀ the covariance of the rows with their noise (S6), D being `noise_weights`, (M).
+    /// L⁻¹B, where LLᵀ is the covariance of the rows with noise (S6); D is `noise_weights`, (M).
     Rows { noise_weights: Vec<f64>, factor: LazyFactor },
-    /// TL⁻¹B with LLᵀ that among inducing rows (S34), and T, (m, m), an upper triangle, of (S37).
+    /// TL⁻¹B, where LLᵀ is the covariance of the inducing rows (S34) and T, (m, m), an upper triangle of (S37).
     Inducing { shrinkage: Upper, factor: LazyFactor },
 }
 
 impl Whitening {
-    /// Replaces B, (M, k), in M² operations a column. `covariance` is of the model's rows, σ² its `noise` without the floor.
+    /// Replaces B, (M, k), in M² operations per column. `covariance` is that of the model's rows, `noise` is σ² without the
+    /// floor.
     pub(crate) fn apply(&self, b: &mut Panel, covariance: &impl Covariance, amplitudes: &[f64], noise: f64) {
         match self {
             Whitening::Rows { noise_weights, factor } => factor.whiten(b, || {

@@ -1,17 +1,17 @@
-//! How large the errors of a policy are that its left-out residuals have in common (S42).
+//! Size of the policy errors that left-out residuals share (S42).
 
 use nalgebra::DMatrix;
 
 use crate::kernel::covariance::NOISE_FLOOR;
 use crate::left_out::LeftOutPredictions;
 
-/// (nᵀn')² from which two rows see nearly the same component of the policy.
+/// (nᵀn')² above which two rows observe nearly the same component of the policy.
 const SAME: f64 = 0.5;
 
-/// γ of (S42): squares of the policy's errors on left-out movements over what its posterior says of them, from products of residuals that
-/// follow each other: these have the policy's error in common, but not their noise. 0 where no two rows of a movement see the same.
+/// γ of (S42): squared errors of the policy on left-out movements divided by the posterior's prediction, from products of successive
+/// residuals, which share the policy's error but not their noise. 0 if no two rows of a movement observe the same component.
 ///
-/// `n` are the rows' directions, (n, M), `noise` is σ² without the floor, with the weights D, (M), `groups` the rows of each movement in the
+/// `n` are the rows' directions, (n, M), `noise` is σ² without the floor, with the weights D, (M), `groups` the rows of each movement in
 /// order of time.
 pub(crate) fn common_error(
     left_out: &LeftOutPredictions,
@@ -21,7 +21,7 @@ pub(crate) fn common_error(
 ) -> f64 {
     let LeftOutPredictions { residuals, variances, .. } = left_out;
     let posterior = |row: usize| (variances[row] - (noise + NOISE_FLOOR) * noise_weights[row]).max(0.0);
-    // The floor is no noise that there is.
+    // The floor is not actual noise.
     let predictive = |row: usize| posterior(row) + noise * noise_weights[row];
     let (mut found, mut expected) = (0.0, 0.0);
     for rows in groups {
@@ -30,7 +30,7 @@ pub(crate) fn common_error(
             let mut near = rows[at + 1..].iter().take(n.nrows()).map(|&other| (other, along(other)));
             let Some((other, along)) = near.find(|(_, along)| along * along >= SAME) else { continue };
             let common = along * (posterior(row) * posterior(other)).sqrt();
-            // Least squares: the products vary as those of the predictive variances.
+            // Least squares: the products vary like products of the predictive variances.
             let weight = common / (predictive(row) * predictive(other));
             found += weight * residuals[(row, 0)] * residuals[(other, 0)];
             expected += weight * common;
@@ -50,8 +50,8 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(32))]
 
-        /// Errors of the policy that are `factor` times as large as its posterior says are found, whatever the noise is and whatever the
-        /// model takes it for.
+        /// Policy errors `factor` times as large as the posterior predicts are found, whatever the noise is and whatever the model assumes
+        /// for it.
         #[test]
         fn the_policys_part_of_errors_is_found(
             factor in 0.01f64..10.0,
@@ -78,7 +78,7 @@ mod tests {
             prop_assert!((found - factor).abs() <= 6.0 * deviation, "{found} {factor}");
         }
 
-        /// Rows that see components at right angles, or that are alone, say nothing; the sign of a direction does not matter.
+        /// Rows that observe orthogonal components, or single rows, contribute nothing; the sign of a direction does not matter.
         #[test]
         fn only_rows_of_one_component_count(values in prop::collection::vec(0.1f64..2.0, 8), flipped in any::<bool>()) {
             let residuals = DMatrix::from_row_slice(8, 1, &values);
@@ -92,7 +92,7 @@ mod tests {
             let pairs: Vec<Vec<usize>> = (0..4).map(|at| vec![2 * at, 2 * at + 1]).collect();
             prop_assert_eq!(of(&turned, &residuals, &pairs), 0.0);
             prop_assert_eq!(of(&same, &residuals, &(0..8).map(|row| vec![row]).collect::<Vec<_>>()), 0.0);
-            // Of several rows a sample, those of the next sample along the same component.
+            // If a sample has several rows, the partner is the row of the next sample along the same component.
             let all = [(0..8).collect::<Vec<_>>()];
             prop_assert!(of(&turned, &residuals, &all) > 0.0);
             let sign = |row: usize| if flipped && row.is_multiple_of(3) { -1.0 } else { 1.0 };

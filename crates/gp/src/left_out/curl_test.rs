@@ -1,4 +1,4 @@
-//! Is there a potential at all? (S12), (R5).
+//! Tests whether there is a potential (S12), (R5).
 
 use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
@@ -6,21 +6,21 @@ use serde::{Deserialize, Serialize};
 use crate::left_out::LeftOutPredictions;
 use crate::left_out::comparison::{DIFFERS, LEAST_T, difference, t_of_mean};
 
-/// Whether a model with rotation is tried beside those with a potential.
+/// Whether a model with rotation is tried in addition to those with a potential.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum CurlTest {
-    /// A Helmholtz decomposition is fitted too, and used if it predicts held-out trajectories better (R5).
+    /// A Helmholtz decomposition is also fitted, and used if it predicts held-out trajectories better (R5).
     #[default]
     Fit,
     /// The policy is assumed to have a potential.
     AssumePotential,
 }
 
-/// Factor in held-out error by which a potential must be better to be kept.
+/// A model without a potential is rejected if its held-out error is more than this factor times the potential's.
 const BETTER: f64 = 1.1;
 
-/// Policies at the rows, (n, M), and what was predicted of left-out trajectories.
+/// Policies at the rows, (n, M), and predictions of left-out trajectories.
 #[derive(Debug)]
 pub(crate) struct Contender<'a> {
     pub(crate) actions: &'a DMatrix<f64>,
@@ -42,16 +42,17 @@ pub(crate) fn curl_t(
     t_of_mean(&gains)
 }
 
-/// Smallest change of the policy by rotation, as a share of the potential's held-out error, before t counts.
+/// Minimum change of the policy by rotation, as a share of the potential's held-out error, for t to count.
 const NOTICEABLE: f64 = 0.05;
-/// Smallest held-out error of a potential, as a share, before prediction alone can reject it.
+/// Minimum held-out error of a potential, as a share, for prediction alone to reject it.
 const UNPREDICTED: f64 = 1e-3;
-/// Largest share of that error which the model with rotation may have then.
+/// Maximum share of that error that the model with rotation may then have.
 const DECISIVE: f64 = 1e-3;
 
-/// Whether rotation is taken: seen by (S12), and not so small that what is unpredicted has other reasons; or because it
-/// leaves next to nothing where the potential does not predict, whatever t is, which one movement with a large gain can
-/// hold down; or by (R5) because dropping the potential changes the policy and costs less than a tenth in prediction.
+/// Whether the model with rotation is selected. Either (S12) detects rotation, and it is large enough not to be
+/// explained by the unpredicted part. Or the rotation leaves almost no error where the potential does not predict,
+/// whatever t is, because one movement with a large gain can make t small. Or, by (R5), dropping the potential changes
+/// the policy and costs less than a tenth in prediction.
 pub(crate) fn takes_rotation(t: f64, potential: &Contender<'_>, rotation: &Contender<'_>) -> bool {
     let (r2_potential, r2_rotation) = (potential.left_out.r_squared, rotation.left_out.r_squared);
     let (left_by_potential, left_by_rotation) = (1.0 - r2_potential, 1.0 - r2_rotation);
@@ -72,7 +73,7 @@ mod tests {
         LeftOutPredictions { residuals: DMatrix::zeros(1, 1), variances: vec![1.0], r_squared, z_squared: 1.0 }
     }
 
-    /// The others' actions, and how much of the first's they differ by: not at all, 4.5 %, or all.
+    /// The other model's actions, which differ from the first's not at all, by 4.5 %, or completely.
     const SAME: [f64; 3] = [1.0, 2.0, 3.0];
     const ALIKE: [f64; 3] = [1.0, 2.0, 2.7];
     const OTHER: [f64; 3] = [3.0, 2.0, 1.0];
@@ -91,14 +92,14 @@ mod tests {
     #[test]
     fn rotation_is_seen_by_t_or_where_it_alone_predicts() {
         assert!(taken(2.6, [0.5, 0.6], ALIKE) && !taken(2.4, [0.5, 0.6], ALIKE));
-        // A gain that one movement makes most of has a small t; but nothing else predicts.
+        // A gain concentrated in one movement has a small t, but no other model predicts.
         assert!(taken(0.5, [-5.8, 1.0 - 4e-9], ALIKE));
-        // Where both predict well, prediction alone decides nothing.
+        // If both predict well, prediction alone decides nothing.
         assert!(!taken(0.5, [1.0 - 1e-4, 1.0 - 1e-9], ALIKE));
         assert!(taken(0.5, [0.5, 0.5], OTHER) && !taken(0.5, [0.5, 0.2], OTHER));
     }
 
-    /// However sure t is, a rotation of nothing is none.
+    /// However significant t is, a rotation that changes nothing does not count.
     #[test]
     fn rotation_that_changes_nothing_is_not_seen() {
         assert!(!taken(9.0, [0.5, 0.6], SAME));

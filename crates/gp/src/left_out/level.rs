@@ -1,4 +1,4 @@
-//! The noise factor κ, by held-out prediction: the marginal likelihood underestimates correlated noise.
+//! Determines the noise factor κ by held-out prediction, because the marginal likelihood underestimates correlated noise.
 
 use std::mem;
 
@@ -17,16 +17,16 @@ pub(crate) struct Conditions<'a> {
     pub(crate) noise_weights: &'a [f64],
     /// Rows of each trajectory.
     pub(crate) groups: &'a [Vec<usize>],
-    /// Σ w|y|² that R² compares with.
+    /// Σ w|y|², the reference of R².
     pub(crate) spread: f64,
 }
 
-/// A model at one level of noise.
+/// A model at one noise level.
 #[derive(Debug)]
 pub(crate) struct Level {
-    /// κ: by how much σ² was raised.
+    /// κ: factor on σ².
     pub(crate) kappa: f64,
-    /// σ² as evidence found it.
+    /// σ² by marginal likelihood.
     pub(crate) found: f64,
     /// σ² used, without the floor.
     pub(crate) noise: f64,
@@ -36,18 +36,18 @@ pub(crate) struct Level {
     pub(crate) left_out: LeftOutPredictions,
 }
 
-/// Factors by which noise is raised.
+/// Factors by which noise is increased.
 pub(crate) fn kappas() -> impl Iterator<Item = f64> {
     (0..=10).map(|power| 4.0_f64.powi(power))
 }
 
-/// σ² at a factor κ; κ = 1 leaves it as it is.
+/// σ² increased by κ; κ = 1 leaves it unchanged.
 pub(crate) fn raised(noise: f64, kappa: f64) -> f64 {
     if kappa == 1.0 { noise } else { (kappa * (noise + NOISE_FLOOR)).min(3.0_f64.exp()) }
 }
 
 impl Level {
-    /// The model with noise κ(σ² + 1e-10), given Σ a_b K_b; none without Cholesky factor.
+    /// The model with noise κ(σ² + 1e-10), given Σ a_b K_b; `None` without a Cholesky factor.
     pub(crate) fn at(covariance: &DMatrix<f64>, found: f64, kappa: f64, conditions: &Conditions<'_>) -> Option<Self> {
         let mut inverse = DMatrix::zeros(covariance.nrows(), covariance.nrows());
         Level::reusing((covariance.clone(), &mut inverse), found, kappa, conditions)
@@ -71,7 +71,7 @@ impl Level {
         Some(Level { kappa, found, noise, factor, weights, left_out })
     }
 
-    /// The best κ, given Σ a_b K_b and σ² found.
+    /// The best κ, given Σ a_b K_b and the σ² found.
     pub(crate) fn best(covariance: &DMatrix<f64>, found: f64, conditions: &Conditions<'_>) -> Option<Self> {
         let zeros = || DMatrix::zeros(covariance.nrows(), covariance.ncols());
         let (mut inverse, mut kappas) = (zeros(), kappas());
@@ -85,8 +85,9 @@ impl Level {
     }
 }
 
-/// The best of levels of rising noise by R², given up after two in a row that are not better, at one that is none, or where there
-/// is nothing to gain. None if already the first is none. `next` gets the worse of two levels for its memory.
+/// The level with the best R² among levels of increasing noise. Stops after two levels in a row without improvement, at a failed
+/// level, or if prediction is already exact. `None` if the first level fails. `next` receives the worse of two levels to reuse
+/// its memory.
 pub(crate) fn climb<T>(
     mut next: impl FnMut(Option<T>) -> Option<T>,
     left_out: impl Fn(&T) -> &LeftOutPredictions,

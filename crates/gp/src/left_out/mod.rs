@@ -1,4 +1,4 @@
-//! Leave-one-trajectory-out prediction. It selects the noise and tests for a potential.
+//! Leave-one-trajectory-out prediction, which selects the noise and tests for a potential.
 
 pub(crate) mod common_error;
 pub(crate) mod comparison;
@@ -14,23 +14,23 @@ use rayon::prelude::*;
 /// Leave-one-trajectory-out predictions in closed form, (S10), (S11), (R3).
 #[derive(Debug, Clone, PartialEq)]
 pub struct LeftOutPredictions {
-    /// y − its prediction without the row's trajectory, (M, c), scaled.
+    /// y minus its prediction without the row's trajectory, (M, c), scaled.
     pub residuals: DMatrix<f64>,
     /// Variance of that prediction, (M), scaled.
     pub variances: Vec<f64>,
     /// R² = 1 − Σ w|e|² / spread.
     pub r_squared: f64,
-    /// Mean of e²/v: 1 where the noise model is right.
+    /// Mean of e²/v: 1 if the noise model is right.
     pub z_squared: f64,
 }
 
-/// Held-out error, as a share of the variance, below which prediction can select nothing more.
+/// Held-out error, as a share of the variance, below which prediction cannot distinguish any further.
 const EXACT: f64 = 1e-8;
 /// Held-out error below which differences between models are insignificant and a model's family is not in question.
 const NEARLY_EXACT: f64 = 1e-3;
 
 impl LeftOutPredictions {
-    /// (S11) of residuals (M, c) and their variances (M); none if they are not finite.
+    /// (S11) for residuals (M, c) and their variances (M); `None` if they are not finite.
     pub(crate) fn of(
         residuals: DMatrix<f64>,
         variances: Vec<f64>,
@@ -46,7 +46,7 @@ impl LeftOutPredictions {
         finite.then_some(LeftOutPredictions { residuals, variances, r_squared, z_squared })
     }
 
-    /// The same with each row at its place among all: `rows` says which one stands where, (M).
+    /// Reorders the rows: `rows`, (M), gives the position of each among all.
     pub(crate) fn at(self, rows: &[usize]) -> LeftOutPredictions {
         let mut placed = self.clone();
         for (at, &row) in rows.iter().enumerate() {
@@ -61,13 +61,13 @@ impl LeftOutPredictions {
         1.0 - self.r_squared < EXACT
     }
 
-    /// Whether prediction is so good that it does not decide between models.
+    /// Whether prediction is so good that it does not distinguish models.
     pub(crate) fn is_nearly_exact(&self) -> bool {
         is_nearly_exact(self.r_squared)
     }
 }
 
-/// What is said of a held-out R² that is low; none of others.
+/// The warning about a low held-out R²; `None` for others.
 pub(crate) fn poorly_predicted(r_squared: f64) -> Option<String> {
     match r_squared {
         r2 if r2 < 0.5 => Some(format!("left-out movements are not predicted (R² {r2:.2}): do not use this policy")),
@@ -76,15 +76,15 @@ pub(crate) fn poorly_predicted(r_squared: f64) -> Option<String> {
     }
 }
 
-/// Whether a held-out R² is so large that it does not decide between models.
+/// Whether a held-out R² is so large that it does not distinguish models.
 pub(crate) fn is_nearly_exact(r_squared: f64) -> bool {
     1.0 - r_squared <= NEARLY_EXACT
 }
 
-/// Of every group of rows T: V_T = ((K⁻¹)_TT)⁻¹ and e_T = V_T α_T, (K⁻¹)_TT = X_Tᵀ X_T with X = L⁻¹, (M, M), zero above the
-/// diagonal. None if a block cannot be inverted.
+/// For each group of rows T: V_T = ((K⁻¹)_TT)⁻¹ and e_T = V_T α_T, with (K⁻¹)_TT = X_Tᵀ X_T and X = L⁻¹, (M, M), zero above
+/// the diagonal. `None` if a block cannot be inverted.
 ///
-/// `spread` is Σ w|y|² about whatever is predicted without a model.
+/// `spread` is Σ w|y|² about the prediction without a model.
 pub(crate) fn left_out(
     x: &DMatrix<f64>,
     weights: &DMatrix<f64>,

@@ -1,17 +1,18 @@
-//! The mean to expect of few values whose law has a heavy tail (S43).
+//! Expected mean of a few values with a heavy-tailed distribution (S43).
 
-/// New movements whose error is expected.
+/// Number of new movements whose error is predicted.
 const MOVEMENTS: i32 = 30;
-/// Smallest value, over their mean, that is distinguished from 0.
+/// Smallest value, relative to the mean, that is distinguished from 0.
 const LEAST: f64 = 1e-12;
-/// log t from, to and by which (S43) is summed: the integrand and its derivatives vanish at both ends.
+/// Range of log t over which (S43) is summed, and the step between values: the integrand and its derivatives vanish at both ends.
 const RANGE: (f64, f64) = (-20.0, 34.0);
 const STEP: f64 = 0.1;
 
-/// (S43): exp of the mean logarithm of the mean of thirty values, each one of these by its weight. Never above the mean of all, and far
-/// below it where one value of hundreds makes that. 0 if all are.
+/// (S43): exp of the expected logarithm of the mean of thirty values drawn from these with their weights. Never above the mean of all,
+/// and far below it if that is dominated by one value in hundreds. 0 if all are 0.
 ///
-/// With X that mean, E log X = ∫ (e^{−t} − E e^{−tX}) dt/t, and E e^{−tX} is the thirtieth power of that of one value over thirty.
+/// With X that mean, E log X = ∫ (e^{−t} − E e^{−tX}) dt/t. E e^{−tX} is the thirtieth power of the expectation for one value divided
+/// by thirty.
 pub(crate) fn typical_mean(values: &[f64], weights: &[f64]) -> f64 {
     let sum: f64 = weights.iter().sum();
     let mean = values.iter().zip(weights).map(|(value, weight)| value * weight).sum::<f64>() / sum;
@@ -42,7 +43,7 @@ mod tests {
     }
 
     proptest! {
-        /// Of two values: the sum over how many of the thirty are the larger one.
+        /// For two values: compares with the sum over the number of the thirty that are the larger one.
         #[test]
         fn of_two_values_it_is_the_binomial_sum(share in 0.001f64..0.999, ratio in 0.0f64..9.0, scale in -9.0f64..9.0) {
             let (few, many) = (10f64.powf(scale + ratio), 10f64.powf(scale));
@@ -52,7 +53,7 @@ mod tests {
             prop_assert!((found.ln() - expected).abs() <= 1e-6, "{} {expected}", found.ln());
         }
 
-        /// It has the values' unit, is one of equal ones, and at most their mean.
+        /// The result scales with the values, equals them if they are equal, and is at most their mean.
         #[test]
         fn it_is_a_mean(values in prop::collection::vec(1e-6f64..1.0, 1..60), scale in -9.0f64..9.0, equal in 1e-9f64..1e9) {
             let ones = vec![1.0; values.len()];

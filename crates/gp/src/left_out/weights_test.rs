@@ -1,17 +1,17 @@
-//! Do noise weights of certain velocities pay? (S18).
+//! Tests whether noise weights for certain velocities improve prediction (S18).
 
 use crate::left_out::comparison::{log_ratio, t_of_mean};
 
-/// t of λ from which weights pay.
+/// Minimum t of λ for using the weights.
 const LEAST_T: f64 = 2.0;
-/// t of λ under which a pilot shows that weights will not pay.
+/// t of λ below which a pilot shows that weights will not help.
 const HOPELESS_T: f64 = -1.0;
 
 /// Held-out errors of one model, (M), in units of speed.
 pub(crate) type Errors<'a> = &'a [f64];
 
-/// (S18): t of λ = mean_T log((E_T + εR_T)/(E'_T + εR_T)), with E_T of the model whose rows all weigh alike, E'_T of the one
-/// with weights, and R_T the sum of squared speeds, all of them with those same weights.
+/// (S18): t of λ = mean_T log((E_T + εR_T)/(E'_T + εR_T)), with E_T of the model with equal weights, E'_T of the model with
+/// weights, and R_T the sum of squared speeds, all computed with the same weights.
 pub(crate) fn weights_t(
     (alike, weighted): (Errors<'_>, Errors<'_>),
     speeds: &[f64],
@@ -25,12 +25,12 @@ pub(crate) fn weights_t(
     t_of_mean(&groups.iter().map(of_movement).collect::<Vec<_>>())
 }
 
-/// Whether movements left out are predicted better with weights, by more than chance.
+/// Whether weights improve the prediction of left-out movements by more than chance.
 pub(crate) fn weights_pay(t: f64) -> bool {
     t >= LEAST_T
 }
 
-/// Whether a pilot with weights predicts so much worse that a search with them is not worth its time.
+/// Whether a pilot with weights predicts so much worse that a search with them is not worthwhile.
 pub(crate) fn weights_cost(t: f64) -> bool {
     t < HOPELESS_T
 }
@@ -42,7 +42,7 @@ mod tests {
     use super::*;
 
     proptest! {
-        /// The unit of weights does not matter, nor that of speed; exchanging the models changes the sign; equal models are
+        /// The units of weights and speed do not matter, exchanging the models changes the sign, and equal models are
         /// equally good.
         #[test]
         fn only_ratios_count(
@@ -62,7 +62,7 @@ mod tests {
         }
     }
 
-    /// A gain in every movement pays, the same gain in one of them does not.
+    /// A gain in every movement suffices; the same gain in only one of them does not.
     #[test]
     fn a_gain_must_be_general() {
         let groups: Vec<Vec<usize>> = (0..6).map(|row| vec![row]).collect();

@@ -18,13 +18,13 @@ use crate::slope::search::outcome;
 use crate::slope::slope_gp::SlopeGp;
 use crate::{FrontEnd, GpError, Rows};
 
-/// Fits the slope GP and the direct GP to the same rows, compares them on held-out demonstrations, and hands out the
-/// policy that the data support (R8). No learner is right for both free and constrained movement.
+/// Fits the slope GP and the direct GP to the same rows, compares them on held-out demonstrations, and returns the policy that the data
+/// support (R8). No single learner is right for both free and constrained movement.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct AutoGp {
-    /// How recordings become rows.
+    /// The front end, which turns recordings into rows.
     pub front_end: FrontEnd,
-    /// The learner for constrained movement; its limits on rows hold for both.
+    /// The learner for constrained movement; its limits on rows apply to both.
     pub slope: SlopeGp,
     /// The learner for free movement.
     pub direct: DirectGp,
@@ -32,18 +32,18 @@ pub struct AutoGp {
     pub reading: Option<Hypothesis>,
 }
 
-/// Both policies, and which of them the data support.
+/// Both policies, and the selection of the one that the data support.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct AutoFit {
     pub(crate) slope: SlopeFit,
     pub(crate) direct: DirectFit,
     pub(crate) numbers: ReadingNumbers,
-    /// The reading of the data when this was learnt; older stored models have none and are read by today's rule.
+    /// The reading at the time of learning. Older stored models have none; the current rule determines theirs.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) reading: Option<Hypothesis>,
     pub(crate) overridden: Option<Hypothesis>,
-    /// Models that were stored before this was kept have none.
+    /// Empty in models stored by versions without this field.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(crate) left_out: Vec<TrajectoryErrors>,
     /// Not stored.
@@ -52,7 +52,7 @@ pub struct AutoFit {
 }
 
 impl AutoGp {
-    /// Learns from rows. The generator draws one permutation and, where rows are thinned, an offset.
+    /// Learns from rows. The generator draws one permutation and, if rows are thinned, an offset.
     ///
     /// # Errors
     /// As [`SlopeGp::fit`] and [`DirectGp::fit`].
@@ -62,7 +62,7 @@ impl AutoGp {
         let few = Both { kept, slope: slope?, direct: direct? };
         let free = few.compared(None).0.agree_on_free_movement();
         let pushed = if free { None } else { pushed(&self.slope, rows, &few.kept, &few.slope) };
-        // Where directions of stretches do not tell, nothing pushed.
+        // If the directions of stretches are not informative, nothing pushed.
         let telling = pushed.filter(|pushed| few.compared(Some(pushed)).0.stretches_tell());
         let (both, pushed) = match telling.map(|pushed| pushed.on_all_rows(rows)) {
             Some(pushed) if pushed.pushes() => (few, Some(pushed)),
@@ -82,7 +82,7 @@ impl AutoGp {
             Some(Pushed { outcome, kept, .. }) => (outcome, kept),
             None => (slope, kept),
         };
-        // Left-out movements test the slope policy in all directions where it is the better one whichever way they went.
+        // If the slope policy is the better one, left-out movements test it in all directions, whatever their own.
         let tested = reading == Hypothesis::Constrained || numbers.shows_a_potential();
         let across = if tested { CrossPathEvidence::Tested } else { CrossPathEvidence::Untested };
         let mut report = report(&ReportInput { outcome: &slope, kept: &kept, rows, across });
@@ -114,12 +114,12 @@ impl AutoFit {
         self.reading.unwrap_or_else(|| self.numbers.reading())
     }
 
-    /// The reading given by the user, if any.
+    /// The user's reading, if given.
     pub fn overridden(&self) -> Option<Hypothesis> {
         self.overridden
     }
 
-    /// The numbers that the reading follows from.
+    /// The numbers that determine the reading.
     pub fn numbers(&self) -> &ReadingNumbers {
         &self.numbers
     }
@@ -129,11 +129,12 @@ impl AutoFit {
         &self.left_out
     }
 
-    /// Whether `other`, of the same trajectories in another metric, predicts them left out so much better that it is right: as learnt
-    /// scales have to (S25), by the slope GPs' errors as shares of what there is to predict, at most those of predicting nothing.
+    /// Whether `other`, a fit of the same trajectories in another metric, predicts left-out trajectories so much better that its metric is
+    /// right. The condition is that for learnt scales (S25): it compares the slope GPs' errors as shares of the quantity to predict, each
+    /// at most that of predicting nothing.
     pub fn is_much_worse_than(&self, other: &AutoFit) -> bool {
         let share = |of: &TrajectoryErrors| (of.slope / of.seen).min(1.0);
-        // Fits of other rows may lack some trajectories; parts of one trajectory are those of both.
+        // Fits of other rows may lack some trajectories; blocks of one trajectory are the same in both.
         let (mut own, mut of) = (self.left_out.iter().peekable(), other.left_out.iter().peekable());
         let mut gains = Vec::new();
         while let (Some(a), Some(b)) = (own.peek(), of.peek()) {
@@ -151,7 +152,8 @@ impl AutoFit {
         much_better(&gains, (unexplained(self), unexplained(other))).is_some()
     }
 
-    /// Rows of samples that the policies learnt from, or with pushes the direct one, each predicted without its trajectory; none of what was stored and read back.
+    /// The rows of samples from which the policies (or with pushes the direct one) were learnt, each predicted without its trajectory.
+    /// Empty after reading a stored fit.
     pub fn left_out_rows(&self) -> &[LeftOutRow] {
         &self.left_out_rows
     }
@@ -166,7 +168,7 @@ impl AutoFit {
         &self.direct
     }
 
-    /// Error (nUPE) to expect of the policy handed out (R6).
+    /// Expected error (nUPE) of the returned policy (R6).
     pub fn expected_nupe(&self) -> f64 {
         match (self.takes_slope(), self.reading()) {
             (true, _) => self.slope.report.expected_nupe,
@@ -175,7 +177,7 @@ impl AutoFit {
         }
     }
 
-    /// The reading in words, for the user.
+    /// The reading as a text for the user.
     pub fn text(&self) -> String {
         let text = self.numbers.text_of(self.reading(), self.slope.report.expected_nupe);
         let pushed = self.slope.report.push.map_or_else(String::new, |push| {
@@ -189,7 +191,7 @@ impl AutoFit {
         }
     }
 
-    /// Whether the policy handed out is the slope GP's.
+    /// Whether the returned policy is the slope GP's.
     pub fn takes_slope(&self) -> bool {
         self.numbers.takes_slope(self.overridden.unwrap_or(self.reading()))
     }
@@ -241,12 +243,12 @@ impl LearntPolicy for AutoFit {
     }
 }
 
-/// The error to expect of the slope policy, which itself expects `own`, beside the direct one (R6): `gap` is how far that is
-/// away, `p_d` what it errs on movements left out, `away` the slope policy's error if it were the truth.
+/// The expected error of the slope policy, given the direct one (R6). `own` is the slope policy's own estimate, `gap` the distance of the
+/// direct policy, `p_d` the direct policy's left-out error, and `away` the slope policy's error if the direct one were the truth.
 fn expected_beside((reading, gap, p_d): (Hypothesis, f64, f64), away: f64, own: f64) -> f64 {
     let expected = match reading {
-        // The direct policy is the right one. Learnt from all movements it errs by nothing to p_d, and the slope policy by
-        // `away` to what both make possible: the middle of these, by their orders of magnitude.
+        // The direct policy is the right one. Learnt from all movements, its error is between nothing and p_d, and the slope policy's is
+        // between `away` and the most that both allow. The estimate is the geometric mean of these bounds.
         Hypothesis::Free => {
             let most = (away.sqrt() + p_d.max(0.0).sqrt()).powi(2);
             (away * own.max(away).min(most)).sqrt()
@@ -263,8 +265,8 @@ mod tests {
     use super::*;
 
     proptest! {
-        /// The other policy's distance is always doubted, knowledge of the mean alone is the worst, and only where nothing is
-        /// hidden do both policies bound the error.
+        /// The estimate always allows for the distance to the other policy, never exceeds the error of knowing only the mean, and is
+        /// bounded by both policies only if nothing is hidden.
         #[test]
         fn what_is_expected_lies_between_the_gap_and_knowing_nothing(
             gap in 0.0f64..2.0,
@@ -282,7 +284,7 @@ mod tests {
             prop_assert!(own < away || own > bound || free <= own + 1e-12);
         }
 
-        /// Where the direct policy is exact, its distance is the error.
+        /// If the direct policy is exact, its distance is the error.
         #[test]
         fn an_exact_direct_policy_knows_the_error(away in 0.0f64..=1.0, own in 0.0f64..=1.0) {
             let expected = expected_beside((Hypothesis::Free, 0.5, 0.0), away, own);
@@ -290,7 +292,7 @@ mod tests {
         }
     }
 
-    /// A direct policy that is the same everywhere is no measure of anything.
+    /// A constant direct policy measures nothing.
     #[test]
     fn where_nothing_varies_nothing_is_known() {
         for away in [f64::NAN, f64::INFINITY] {

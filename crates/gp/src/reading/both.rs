@@ -1,4 +1,4 @@
-//! The slope GP and the direct GP of the same rows, before one of them is taken.
+//! The slope GP and the direct GP on the same rows, before one of them is selected.
 
 use crate::Rows;
 use crate::direct::direct_gp::DirectOutcome;
@@ -20,7 +20,7 @@ pub(crate) struct Both {
 pub(crate) type LeftOutPredictions = (Vec<TrajectoryErrors>, Vec<LeftOutRow>);
 
 impl Both {
-    /// Both on all rows, where that pays for slopes; as they are otherwise.
+    /// Both models on all rows if that improves the slope GP; otherwise unchanged.
     pub(crate) fn on_all_rows(self, gp: &SlopeGp, rows: &Rows) -> Both {
         let all = on_all_samples(gp, rows, &self.kept, &self.slope);
         let both = all.and_then(|all| Some((self.direct.on_all_rows(&all.kept, gp.inducing_rows)?, all)));
@@ -30,7 +30,8 @@ impl Both {
         }
     }
 
-    /// How they predict trajectories left out, on these rows; the slope GP of `pushed` in place of their own, if there is one.
+    /// Compares their predictions of left-out trajectories on these rows, with the slope GP of `pushed`, if any, in place of
+    /// their own.
     pub(crate) fn compared(&self, pushed: Option<&Pushed>) -> (ReadingNumbers, LeftOutPredictions) {
         let Both { kept, slope, direct } = self;
         let actions = pushed.map(|pushed| pushed.outcome.taken.model.actions(&kept.states));

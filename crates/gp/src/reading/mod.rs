@@ -1,4 +1,4 @@
-//! Whether the demonstrations were constrained.
+//! Determines whether the demonstrations were constrained.
 
 pub(crate) mod auto_gp;
 pub(crate) mod both;
@@ -17,31 +17,31 @@ use crate::rows::kept::Grouping;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Hypothesis {
-    /// No sign of one: the direct policy, or the slope GP's where movements descend a potential that it learns far better.
+    /// No sign of constraints: the direct policy, or the slope GP's if movements descend a potential that it learns far better.
     Free,
     /// Constraints hid part of the policy and varied: the slope policy.
     Constrained,
-    /// Two readings explain the same data: mostly the direct policy.
+    /// Two readings explain the same data: usually the direct policy.
     Ambiguous,
-    /// Neither predicts: no policy should be trusted.
+    /// Neither policy predicts, so none should be trusted.
     Unexplained,
-    /// Too few demonstrations to tell: the direct policy.
+    /// Too few demonstrations to decide: the direct policy.
     TooFew,
 }
 
-/// The two policies agree so well that no question is left.
+/// Difference up to which the two policies count as equal, whatever was observed.
 const SAME: f64 = 0.01;
-/// They agree well enough where all directions are seen.
+/// Difference up to which the policies count as equal if all directions were observed.
 const CLOSE: f64 = 0.1;
-/// Every direction is seen if the least is, by this share of an even one.
+/// All directions count as observed if the least observed one has this share of an even distribution.
 const SEEN: f64 = 0.1;
-/// The same where the policies differ: noise alone shows up to this share of an even one across a constraint that all have.
+/// The same if the policies differ: across a constraint common to all movements, noise alone produces up to this share.
 const WELL_SEEN: f64 = 0.25;
-/// Demonstrations below which nothing is called constrained.
+/// Minimum number of demonstrations for the reading constrained.
 const DEMONSTRATIONS: usize = 5;
-/// Left-out error above which nothing is explained.
+/// Left-out error above which movements are unexplained.
 const UNEXPLAINED: f64 = 0.5;
-/// A share of the slope policy's length that is hidden for certain.
+/// Share of the slope policy's squared length that certainly counts as hidden.
 const HIDDEN: f64 = 0.08;
 
 impl ReadingNumbers {
@@ -63,19 +63,19 @@ impl ReadingNumbers {
         }
     }
 
-    /// Whether there was motion in every direction, and more than noise makes if the policies differ.
+    /// Whether there was motion in every direction, and more than noise produces if the policies differ.
     pub fn seen(&self) -> bool {
         let least = if self.gap > SAME { WELL_SEEN } else { SEEN };
         self.least_seen.share * self.least_seen.direction.len() as f64 >= least
     }
 
-    /// Whether the state has one dimension. Its one direction cannot hide another: a constraint stops the movement or does
-    /// nothing, and neither is a part of the policy that is lost from view.
+    /// Whether the state has one dimension. Its only direction cannot hide another: a constraint stops the movement or has no
+    /// effect, and neither hides a part of the policy.
     fn is_a_line(&self) -> bool {
         self.least_seen.direction.len() == 1
     }
 
-    /// Whether the direction of a movement helps much to predict its speed. Where the state alone predicts well, the
+    /// Whether the direction of a movement improves the prediction of its speed much. If the state alone predicts well, the
     /// threshold is higher: people's handwriting, which is free, gains up to λ = 0.7 there.
     pub fn direction_tells(&self) -> bool {
         let least_lambda = if self.p_d > UNEXPLAINED { 0.5 } else { 0.75 };
@@ -83,27 +83,27 @@ impl ReadingNumbers {
         !self.is_a_line() && (gains || (self.lambda >= least_lambda && self.t_lambda >= self.least_t()))
     }
 
-    /// Whether the directions in which velocities of a stretch differ help, where those of samples do not. Five movements agree on
-    /// that by chance as long as logarithms of errors alone are compared.
+    /// Whether the directions in which velocities of a stretch differ are informative even if those of samples are not. If only
+    /// logarithms of errors are compared, five movements may agree on that by chance.
     pub(crate) fn stretches_tell(&self) -> bool {
         let many = self.trajectories >= DEMONSTRATIONS && self.t >= self.least_t();
         many && self.gap > SAME && self.direction_tells()
     }
 
-    /// Two standard deviations of Student's distribution, infinite for three trajectories.
+    /// Two standard deviations of Student's t distribution; infinite for three trajectories.
     fn least_t(&self) -> f64 {
         let freedom = self.trajectories.saturating_sub(1) as f64;
         if freedom > 2.0 { 2.0 * (freedom / (freedom - 2.0)).sqrt() } else { f64::INFINITY }
     }
 
-    /// Whether the slope policy has a part that was not observed. In many dimensions, and where it has kinks, a potential is
-    /// learnt from far fewer movements than a velocity field, whether or not anything was constrained: then the two
-    /// policies differ by little, and by less than the direct one errs.
+    /// Whether the slope policy has an unobserved part. In many dimensions, and for policies with kinks, a potential is learnt
+    /// from far fewer movements than a velocity field, with or without constraints. Then the two policies differ little, and by
+    /// less than the direct one's error.
     pub fn hides(&self) -> bool {
         self.gap > self.p_d || (self.hidden >= HIDDEN && self.gap > CLOSE)
     }
 
-    /// The policy to hand out: whether it is the slope GP's.
+    /// Whether the returned policy is the slope GP's.
     pub fn takes_slope(&self, reading: Hypothesis) -> bool {
         match reading {
             Hypothesis::Constrained => true,
@@ -113,22 +113,22 @@ impl ReadingNumbers {
         }
     }
 
-    /// Free movement, and both policies are nearly the same: nothing can have pushed, either.
+    /// Whether movement is free and both policies are nearly equal, so that nothing can have pushed either.
     pub(crate) fn agree_on_free_movement(&self) -> bool {
         self.reading() == Hypothesis::Free && self.gap <= CLOSE
     }
 
-    /// Nothing was hidden, and the slope GP is far better nevertheless.
+    /// Whether nothing was hidden and the slope GP is nevertheless far better.
     pub(crate) fn shows_a_potential(&self) -> bool {
         self.gap > SAME && self.trajectories >= DEMONSTRATIONS && self.direction_tells() && !self.hides()
     }
 
-    /// The reading in words, for the user. `expected_nupe` is the slope policy's.
+    /// The reading as a text for the user. `expected_nupe` is the slope policy's.
     pub fn text(&self, expected_nupe: f64) -> String {
         self.text_of(self.reading(), expected_nupe)
     }
 
-    /// The same of a reading that more than these numbers led to.
+    /// The same for a reading that does not follow from these numbers alone.
     pub(crate) fn text_of(&self, reading: Hypothesis, expected_nupe: f64) -> String {
         let &ReadingNumbers { a_s, a_d, p_d, gap, hidden, .. } = self;
         let (a_s, a_d, p_d, gap, hidden) = (Percent(a_s), Percent(a_d), Percent(p_d), Percent(gap), Percent(hidden));

@@ -1,4 +1,4 @@
-//! Where two demonstrations pass the same place, do they move alike? (R9)
+//! Compares the velocities of demonstrations that pass the same place (R9).
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -10,24 +10,24 @@ use serde::{Deserialize, Serialize};
 
 use crate::{GpError, Rows};
 
-/// Samples slower than this share of the root mean square speed are left out: near a goal everything turns.
+/// Samples slower than this share of the root mean square speed are skipped, because near a goal all directions turn.
 const SLOW: f64 = 0.5;
-/// Samples compared, at most.
+/// Maximum number of samples to compare.
 const SAMPLES: usize = 5000;
-/// Fewer pairs of trajectories are inconclusive.
+/// Fewer pairs of trajectories than this are inconclusive.
 const FEW: usize = 3;
 
-/// How differently two trajectories move where they pass near each other (R9). A model-free check that supports a reading
-/// and never decides it.
+/// Difference between the velocities of two trajectories where they pass near each other (R9). A model-free check that
+/// supports a reading and never decides it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct NearPasses {
-    /// Pairs of trajectories that meet.
+    /// Number of pairs of trajectories that meet.
     pub pairs: usize,
-    /// Pairs of samples that are near each other.
+    /// Number of pairs of samples that are near each other.
     pub samples: usize,
-    /// 0: they move alike; 1: as if unrelated; 2: in opposite directions. Every pair of trajectories weighs the same.
-    /// None if no two meet.
+    /// 0: same velocities; 1: unrelated; 2: opposite. Every pair of trajectories has the same weight. `None` if no two
+    /// meet.
     pub share: Option<f64>,
 }
 
@@ -35,10 +35,10 @@ impl NearPasses {
     /// The usual distance of a near pass, in units of the root mean square distance of two samples.
     pub const USUAL_DISTANCE: f64 = 0.05;
 
-    /// Of samples within `distance` · √(2 Σ_k var x_k) of each other. More than 5000 samples are thinned at random.
+    /// Compares samples within `distance` · √(2 Σ_k var x_k) of each other. More than 5000 samples are thinned at random.
     ///
     /// # Errors
-    /// [`GpError::Parameter`] for a distance that is not positive.
+    /// [`GpError::Parameter`] if the distance is not positive.
     pub fn of<R: Rng + ?Sized>(rows: &Rows, distance: f64, rng: &mut R) -> Result<Self, GpError> {
         if !(distance > 0.0 && distance.is_finite()) {
             return Err(GpError::Parameter {
@@ -61,7 +61,7 @@ impl NearPasses {
     }
 
     fn among(rows: &Rows, fast: &[usize], squared_radius: f64) -> Self {
-        // Count, Σ|u_i − u_j|² and Σ(|u_i|² + |u_j|²) of every pair of trajectories.
+        // Count, Σ|u_i − u_j|² and Σ(|u_i|² + |u_j|²) for each pair of trajectories.
         let mut meetings = BTreeMap::<(usize, usize), (usize, f64, f64)>::new();
         let (x, u) = (rows.states(), rows.velocities());
         for (at, &i) in fast.iter().enumerate() {

@@ -11,8 +11,8 @@ use crate::rows::kept::Grouping;
 use crate::slope::data::SlopeData;
 use crate::slope::model::SlopeModel;
 
-/// The numbers that select a reading (R7). Both learners predict the speed along the direction in which a held-out
-/// movement went; only the slope GP uses that direction as an input.
+/// The numbers that determine the reading (R7). Both learners predict the speed along the direction of a held-out movement; only the
+/// slope GP uses that direction as an input.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ReadingNumbers {
@@ -36,7 +36,7 @@ pub struct ReadingNumbers {
     pub least_seen: LeastSeen,
     /// Share of the slope policy's squared length that constraints hid, approximately.
     pub hidden: f64,
-    /// Trajectories with rows.
+    /// Number of trajectories that have rows.
     pub trajectories: usize,
     /// The unit of leave-one-out.
     pub grouping: Grouping,
@@ -47,7 +47,7 @@ pub struct ReadingNumbers {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TrajectoryErrors {
-    /// The trajectory; of one or two that were cut into blocks of time, each block is an entry.
+    /// The trajectory. If one or two trajectories were cut into blocks of time, each block has an entry.
     pub trajectory: usize,
     /// E^s of the slope GP.
     pub slope: f64,
@@ -57,17 +57,16 @@ pub struct TrajectoryErrors {
     pub seen: f64,
 }
 
-/// Speed along the direction in which a movement went, as it was seen and as it is predicted from all other movements, in units of the
-/// state per second.
+/// Speed along the direction of a movement, as observed and as predicted from all other movements, in units of the state per second.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LeftOutRow {
-    /// Where it was recorded; of a mean (S33) its first sample.
+    /// The recorded sample; for a mean (S33), its first sample.
     pub index: SampleIndex,
-    /// r, what was seen.
+    /// r, the observed speed.
     pub seen: f64,
-    /// What the slope GP predicts; none where it learnt from rows of stretches.
+    /// Prediction of the slope GP; `None` if it learnt from rows of stretches.
     pub slope: Option<f64>,
-    /// What the direct GP predicts.
+    /// Prediction of the direct GP.
     pub direct: f64,
 }
 
@@ -76,7 +75,7 @@ pub struct LeftOutRow {
 pub(crate) struct Compared<'a> {
     pub(crate) speeds: &'a [f64],
     pub(crate) grouping: Grouping,
-    /// Where each row was recorded.
+    /// The sample of each row.
     pub(crate) indices: &'a [SampleIndex],
     pub(crate) data: &'a SlopeData,
     /// Held-out predictions of the slope GP, and its policy at the rows, (n, M).
@@ -85,7 +84,7 @@ pub(crate) struct Compared<'a> {
     pub(crate) direct: (&'a LeftOutPredictions, &'a DMatrix<f64>),
     /// ū.
     pub(crate) direct_unit: f64,
-    /// What the slope GP errs on each group, as a share of what was to predict, where it learnt from other rows than `data`.
+    /// The slope GP's error on each group, as a share of the quantity to predict, if it learnt from other rows than `data`.
     pub(crate) shares: Option<&'a [f64]>,
 }
 
@@ -111,7 +110,7 @@ impl Compared<'_> {
         data.groups.iter().enumerate().map(errors).collect()
     }
 
-    /// What is predicted of every row.
+    /// Predictions of every row.
     pub(crate) fn rows(&self) -> Vec<LeftOutRow> {
         let row = |(row, (&seen, &index)): (usize, (&f64, &SampleIndex))| LeftOutRow {
             index,

@@ -1,13 +1,14 @@
-//! Which directions of a policy the demonstrations determine.
+//! Determines which directions of a policy the demonstrations identify.
 
 use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
 
-/// Mean posterior over mean prior variance of the policy: 0 where the demonstrations determine it, 1 where they do not.
+/// Mean posterior variance of the policy divided by its mean prior variance: 0 if the demonstrations determine the
+/// policy, 1 if they do not.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Identifiability {
-    /// Along every axis.
+    /// Along each axis.
     pub axes: Vec<f64>,
     /// Along `direction`.
     pub least: f64,
@@ -19,14 +20,15 @@ pub struct Identifiability {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LeastSeen {
-    /// Least eigenvalue of the mean of n nᵀ: 0 if nothing ever moved there, 1/n if all directions are seen alike.
+    /// Smallest eigenvalue of the mean of n nᵀ: 0 if nothing ever moved along its eigenvector, 1/n if all directions
+    /// were observed equally.
     pub share: f64,
-    /// Its direction, (n).
+    /// The eigenvector, (n).
     pub direction: Vec<f64>,
 }
 
 impl Identifiability {
-    /// Of mean posterior and prior covariances of the policy, (n, n).
+    /// From the mean posterior and prior covariances of the policy, (n, n).
     pub(crate) fn of(posterior: &DMatrix<f64>, prior: &DMatrix<f64>) -> Self {
         let eigen = posterior.clone().symmetric_eigen();
         let direction = eigen.eigenvectors.column(eigen.eigenvalues.imax());
@@ -45,7 +47,7 @@ impl Identifiability {
 }
 
 impl LeastSeen {
-    /// Of directions of motion n, (n, M).
+    /// From directions of motion n, (n, M).
     pub(crate) fn of(directions: &DMatrix<f64>) -> Self {
         let mean = directions * directions.transpose() / directions.ncols() as f64;
         let eigen = mean.symmetric_eigen();
@@ -57,7 +59,7 @@ impl LeastSeen {
     }
 }
 
-/// A direction in words.
+/// A direction as text.
 pub(crate) fn direction(vector: &[f64]) -> String {
     let entries: Vec<_> = vector.iter().map(|entry| format!("{entry:.2}")).collect();
     format!("({})", entries.join(", "))

@@ -1,4 +1,4 @@
-//! How far a slope GP can be trusted, in numbers and in words.
+//! Reliability of a slope GP, in numbers and in words.
 
 pub(crate) mod identifiability;
 pub(crate) mod trust_report;

@@ -6,56 +6,56 @@ use crate::left_out::{is_nearly_exact, poorly_predicted};
 use crate::report::identifiability::{Identifiability, LeastSeen, direction};
 use crate::rows::kept::{Grouping, RowsDropped};
 
-/// How far a slope GP can be trusted, in numbers (`docs/slope-gp.md`, section 6).
+/// Reliability of a slope GP, in numbers (`docs/slope-gp.md`, section 6).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TrustReport {
     /// Held-out R² (S11): below 0.9 poor, below 0.5 unusable.
     pub r_squared: f64,
-    /// Mean squared held-out error over its predictive variance (S11); above 4 the noise model is wrong.
+    /// Mean squared held-out error divided by its predictive variance (S11); above 4 the noise model is wrong.
     pub z_squared: f64,
-    /// γ of (S19): factor on the posterior's variance, in error bars and in `expected_nupe`. Models that were stored before
-    /// this was kept have none.
+    /// γ of (S19): factor on the posterior variance, in error bars and in `expected_nupe`. `None` in models stored by versions without this
+    /// field.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub calibration: Option<f64>,
-    /// Expected normalised error of the policy (nUPE) on movements that were not shown (S19), with what the alternative model says (R6), and with
+    /// Expected normalised error of the policy (nUPE) on new movements (S19). It includes the difference of the alternative model (R6) and
     /// [`Rows::step_change`](crate::Rows::step_change).
     pub expected_nupe: f64,
-    /// Difference of the alternative model's policy, where it predicts nearly as well (R6): across the paths the policy
-    /// is a guess where this is over 0.1.
+    /// Difference of the alternative model's policy, if that predicts nearly as well (R6). Above 0.1, the policy across the observed paths
+    /// is a guess.
     pub ambiguity: f64,
-    /// Which directions of the policy the demonstrations determine.
+    /// The directions of the policy that the demonstrations determine.
     pub identifiability: Identifiability,
     /// The direction with the least motion.
     pub least_seen: LeastSeen,
-    /// t of (S12); none where no model with rotation was fitted.
+    /// t of (S12); `None` if no model with rotation was fitted.
     pub curl_t: Option<f64>,
     /// Σ|π̂_rot|²/Σ|π̂|²; 0 for a potential.
     pub rotational_share: f64,
-    /// The model selected.
+    /// The selected model.
     pub model: ModelKind,
-    /// The family selected.
+    /// The selected family.
     pub family: Family,
-    /// Every model fitted.
+    /// All fitted models.
     pub families: Vec<FamilyReport>,
-    /// Rows learnt from.
+    /// Number of rows learnt from.
     pub rows: usize,
-    /// Inducing rows (S34) that the policy is a sum over; none where it is one over all rows.
+    /// Number of inducing rows (S34) over which the policy is a sum; `None` if it is a sum over all rows.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub inducing: Option<usize>,
     /// Rows not learnt from.
     pub rows_dropped: RowsDropped,
     /// The unit of leave-one-out.
     pub grouping: Grouping,
-    /// Standard deviation of the noise on positions that the front end found, in units of the state.
+    /// Standard deviation of the noise on positions estimated by the front end, in units of the state.
     pub noise: Option<f64>,
     /// Number of samples before which a constraint probably switched.
     pub switches: Option<usize>,
-    /// Root mean square of the pushes A⁺b of constraints, as a share of the policy's speed, where the policy was learnt from
-    /// directions in which velocities differ.
+    /// Root mean square of the constraints' pushes A⁺b, as a share of the policy's speed, if the policy was learnt from directions in which
+    /// velocities differ.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub push: Option<f64>,
-    /// The task space whose constraints the policy was learnt from (S41), by its place among [`Rows::task_spaces`](crate::Rows::task_spaces).
+    /// The task space whose constraints the policy was learnt from (S41), as its index in [`Rows::task_spaces`](crate::Rows::task_spaces).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub task_space: Option<usize>,
 }
@@ -70,7 +70,7 @@ pub enum ModelKind {
     Helmholtz,
 }
 
-/// One model that was fitted.
+/// A fitted model.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FamilyReport {
@@ -78,7 +78,7 @@ pub struct FamilyReport {
     pub family: Family,
     /// With or without rotation.
     pub model: ModelKind,
-    /// Its result; none if its covariance has no Cholesky factor.
+    /// Its result; `None` if its covariance has no Cholesky factor.
     pub fit: Option<FamilyNumbers>,
 }
 
@@ -97,12 +97,12 @@ pub struct FamilyNumbers {
 }
 
 impl TrustReport {
-    /// Whether left-out movements are predicted so well, 1 − R² ≤ 1e-3, that nothing is left to explain.
+    /// Whether left-out movements are predicted so well (1 − R² ≤ 1e-3) that no better model can be distinguished.
     pub fn is_nearly_exact(&self) -> bool {
         is_nearly_exact(self.r_squared)
     }
 
-    /// Factor on (S13) in error bars: [`TrustReport::calibration`], or max(1, z²) of an older model.
+    /// Factor on (S13) in error bars: [`TrustReport::calibration`], or max(1, z²) for an older model.
     pub fn variance_factor(&self) -> f64 {
         self.calibration.unwrap_or(self.z_squared.max(1.0))
     }

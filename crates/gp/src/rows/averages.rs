@@ -1,4 +1,4 @@
-//! Means of neighbouring samples in place of samples, where velocities are noisy (S33).
+//! Means of neighbouring samples, which replace samples if velocities are noisy (S33).
 
 use std::borrow::Cow;
 use std::ops::Range;
@@ -8,34 +8,35 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::Rows;
 
-/// How many standard deviations of noise alone two neighbouring means may differ beyond the mean of such differences.
+/// Number of standard deviations by which the squared difference of two neighbouring means may exceed its expectation under noise
+/// alone.
 const DEVIATIONS: f64 = 7.0;
 
-/// Means of samples that follow each other.
+/// Means of successive samples.
 #[derive(Debug, Clone)]
 struct Block {
     /// Its first row.
     first: usize,
-    /// Where its first sample stands in its trajectory, and how many it has: a power of two.
+    /// Position of the first sample in its trajectory, and number of samples, a power of two.
     begin: usize,
     count: usize,
     state: DVector<f64>,
     velocity: DVector<f64>,
     momentum: Option<DVector<f64>>,
-    /// Of the velocity along an axis.
+    /// Variance of the velocity along an axis.
     variance: f64,
     index: SampleIndex,
-    /// Which constraint acted, where that is known.
+    /// Label of the constraint that acted, if known.
     label: Option<usize>,
 }
 
 impl Rows {
-    /// (S33): neighbouring rows of a trajectory as one, again and again, while their velocities differ by little more than their
-    /// noise. Costs M n. The same rows where velocities are certain, or where they were found from positions: then noise is not
-    /// independent from row to row, and was averaged already.
+    /// (S33): repeatedly merges neighbouring rows of a trajectory while their velocities differ by little more than their noise.
+    /// Costs M n. Returns the same rows if velocities are certain, or were computed from positions: their noise is then not
+    /// independent from row to row, and has already been averaged.
     ///
-    /// The direction of (S1) is that of the velocity, so that noise of it enters squared and does not go down with the number of
-    /// rows: of a velocity's noise, its mean over as many samples does.
+    /// The direction in (S1) is that of the velocity. Noise of the velocity therefore enters squared, and more rows do not reduce
+    /// it; averaging the velocity over the same samples does.
     ///
     /// Rows of [further trajectories](Rows::with_further) follow.
     pub fn averaged(&self) -> Cow<'_, Rows> {
@@ -76,7 +77,7 @@ impl Rows {
         })
     }
 
-    /// Of one trajectory. Blocks begin at multiples of their length.
+    /// The blocks of one trajectory. Blocks begin at multiples of their length.
     fn blocks(&self, rows: Range<usize>, variances: &[f64]) -> Vec<Block> {
         let dim = self.dim() as f64;
         let most = dim + DEVIATIONS * (2.0 * dim).sqrt();
@@ -122,7 +123,7 @@ impl Block {
     }
 }
 
-/// Blocks of all trajectories, number after number.
+/// Blocks of all trajectories, stored as one list per quantity.
 #[derive(Default)]
 struct Means {
     states: Vec<f64>,
@@ -131,7 +132,7 @@ struct Means {
     variances: Vec<f64>,
     indices: Vec<SampleIndex>,
     labels: Vec<usize>,
-    /// The rows of each.
+    /// The rows of each block.
     spans: Vec<Range<usize>>,
 }
 
@@ -174,8 +175,8 @@ mod tests {
     }
 
     proptest! {
-        /// A velocity that stays: each trajectory as the powers of two that make up its length, with the mean state and velocity and
-        /// the variance of so many samples. No mean is of two trajectories. Units do not matter.
+        /// Constant velocity: each trajectory becomes the powers of two that make up its length, with the mean state and velocity
+        /// and the corresponding variance. No mean spans two trajectories. Units do not matter.
         #[test]
         fn what_stays_is_one_row(
             lengths in prop::collection::vec(1usize..70, 1..6),
@@ -209,7 +210,7 @@ mod tests {
             }
         }
 
-        /// A jump of many deviations is in no mean, wherever it is; what is certain, or found from positions, stays.
+        /// A jump of many deviations is in no mean, wherever it is. Certain velocities, and those from positions, are unchanged.
         #[test]
         fn no_mean_crosses_a_jump(length in 2usize..200, at in 0.0..1.0f64, dim in 1usize..4, noise in 0.001..0.1f64) {
             let jump = 1 + (at * (length - 1) as f64) as usize;
@@ -227,7 +228,7 @@ mod tests {
         }
     }
 
-    /// A half of one movement may have none.
+    /// One half of a movement may be empty.
     #[test]
     fn no_rows_have_no_means() {
         let none = rows(&DMatrix::zeros(2, 0), &[]).with_variances(Vec::new()).expect("no variances");

@@ -7,25 +7,25 @@ use smoothing::{Fusion, Smoother, SmoothingError, VelocityNoise};
 
 use crate::{GpError, Rows};
 
-/// How recordings become rows of states and velocities.
+/// Conversion of recordings to rows of states and velocities.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub enum FrontEnd {
     /// Recorded velocities or commands, taken as exact: (x_i, u_i) for all i.
     Velocities,
     /// Recorded velocities or commands with white noise: (x_i, u_i) for all i, each with this variance.
     NoisyVelocities {
-        /// s² of (S2): variance of a velocity along every axis, in squared units of the state per second.
+        /// s² of (S2): variance of a velocity along each axis, in squared units of the state per second.
         variance: f64,
     },
-    /// Positions of a simulator that takes Euler steps: u_i = (x_{i+1} − x_i)/δt for all samples but the last. Exact
-    /// there, because the simulator is that map; elsewhere the policy found is too steep.
+    /// Positions of a simulator that takes Euler steps: u_i = (x_{i+1} − x_i)/δt for all samples but the last. Exact for such a
+    /// simulator, which applies this map; for other data, the estimated policy is too steep.
     #[default]
     #[serde(rename = "Map")]
     FiniteDifferences,
-    /// Positions of a physical system: states and velocities by the smoother, velocities with their variance.
+    /// Positions of a physical system: states and velocities from the smoother, velocities with their variance.
     Smoothed(Smoother),
-    /// Noisy positions with clean velocities or commands: fused states, velocities as recorded. The remaining
-    /// error of the states is neglected.
+    /// Noisy positions with clean velocities or commands: fused states, velocities as recorded. The remaining error of the states is
+    /// neglected.
     Fused(Fusion),
 }
 
@@ -33,19 +33,19 @@ pub enum FrontEnd {
 type Movement<'a> = (Cow<'a, DMatrix<f64>>, Cow<'a, DMatrix<f64>>);
 
 impl FrontEnd {
-    /// Recorded velocities, with their noise where that [counts](VelocityNoise::is_negligible).
+    /// Recorded velocities, with their noise if it [counts](VelocityNoise::is_negligible).
     pub fn of_velocities(demonstrations: &Demonstrations) -> FrontEnd {
         let noise = VelocityNoise::of(demonstrations).filter(|noise| !noise.is_negligible());
         let variance = noise.map(|noise| noise.variance / demonstrations.dim() as f64);
         variance.map_or(FrontEnd::Velocities, |variance| FrontEnd::NoisyVelocities { variance })
     }
 
-    /// The rows of all trajectories, in order, each with its trajectory's context, and with the labels of constraints if these change
-    /// within any trajectory.
+    /// The rows of all trajectories, in order, each with its trajectory's context, and with constraint labels if these change within
+    /// any trajectory.
     ///
     /// # Errors
     /// [`GpError::NoVelocities`] if they are needed, [`GpError::Value`] for a variance that is negative or not finite,
-    /// [`GpError::Cleaning`] if the smoother refuses, [`GpError::Overflow`] if squares of speeds are not finite.
+    /// [`GpError::Cleaning`] if the smoother fails, [`GpError::Overflow`] if squares of speeds are not finite.
     pub fn rows(&self, demonstrations: &Demonstrations) -> Result<Rows, GpError> {
         let rows = labelled(self.without_context(demonstrations)?, demonstrations)?;
         if demonstrations.context_dim() == 0 {
@@ -78,7 +78,8 @@ impl FrontEnd {
     }
 }
 
-/// Labels that never change within a movement name constraints, but do not say that these stayed the same.
+/// Adds labels. Labels that never change within a movement only name constraints; they do not imply that the constraints stayed the
+/// same.
 fn labelled(rows: Rows, demonstrations: &Demonstrations) -> Result<Rows, GpError> {
     let labels = |trajectory: usize| demonstrations.trajectories()[trajectory].labels();
     if !(0..demonstrations.n_trajectories()).any(|at| labels(at).is_some_and(|labels| labels.switches() > 0)) {
@@ -89,7 +90,7 @@ fn labelled(rows: Rows, demonstrations: &Demonstrations) -> Result<Rows, GpError
     rows.with_labels(labels)
 }
 
-/// Recorded velocities at states of one's choice.
+/// Recorded velocities at the given states.
 fn recorded<'a>(
     demonstrations: &'a Demonstrations,
     mut states: impl FnMut(&'a Trajectory) -> Cow<'a, DMatrix<f64>>,

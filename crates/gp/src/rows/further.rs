@@ -1,4 +1,4 @@
-//! Rows of further trajectories, whose samples are not at hand.
+//! Rows of further trajectories, whose samples are not in memory.
 
 use std::sync::Arc;
 
@@ -7,24 +7,24 @@ use nalgebra::DMatrix;
 
 use crate::{GpError, Rows};
 
-/// Rows of further trajectories, and what they were made of.
+/// Rows of further trajectories, and the counts of their origin.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Further {
     rows: Arc<Rows>,
-    /// Samples of those trajectories.
+    /// Number of samples of those trajectories.
     samples: usize,
-    /// Rows that were left out.
+    /// Number of rows that were thinned.
     thinned: usize,
 }
 
 impl Rows {
-    /// Adds rows of further trajectories, in the units of these: what is left of recordings that are too large to be held together, such as
-    /// their [means](Rows::averaged), [some of them](Rows::at_most). They are learnt from as all others are, but no stretches are found in
-    /// them. Their trajectories count from 0 and follow those of these rows. `samples` and `thinned` tell how many samples they were made
-    /// of, and how many rows of these are left out.
+    /// Adds rows of further trajectories, in the units of these: reduced rows of recordings too large for memory, such as their
+    /// [means](Rows::averaged) or [some of them](Rows::at_most). They are learnt from like all others, but no stretches are found in them.
+    /// Their trajectories count from 0 and follow those of these rows. `samples` is the number of samples they were made of, `thinned` the
+    /// number of rows that were dropped.
     ///
     /// # Errors
-    /// [`GpError::Lengths`] where dimensions differ, or only one has variances. Momenta and task spaces do not go together with further rows.
+    /// [`GpError::Lengths`] if dimensions differ, or only one has variances. Momenta and task spaces cannot be combined with further rows.
     pub fn with_further(self, further: Rows, samples: usize, thinned: usize) -> Result<Self, GpError> {
         let same = |what, found, expected| {
             if found == expected { Ok(()) } else { Err(GpError::Lengths { what, found, expected }) }
@@ -44,30 +44,30 @@ impl Rows {
         Ok(Rows { further: Some(Further { rows, samples, thinned }), ..self })
     }
 
-    /// Samples that these rows are of, with those of further rows.
+    /// Number of samples of these rows, including those of further rows.
     pub(crate) fn recorded(&self) -> usize {
         self.len() + self.further.as_ref().map_or(0, |further| further.samples)
     }
 
-    /// Further rows that are left out.
+    /// Number of further rows that were thinned.
     pub(crate) fn thinned_before(&self) -> usize {
         self.further.as_ref().map_or(0, |further| further.thinned)
     }
 }
 
 impl Further {
-    /// Those whose sample is not held out.
+    /// The rows whose sample is not held out.
     pub(crate) fn without(&self, held_out: &dyn Fn(usize, usize) -> bool) -> Further {
         Further { rows: Arc::new(self.rows.without(held_out)), ..self.clone() }
     }
 
-    /// `rows`, and these after them.
+    /// `rows`, followed by these.
     pub(crate) fn after(&self, rows: &Rows) -> Rows {
         let beside = |a: &DMatrix<f64>, b: &DMatrix<f64>| {
             DMatrix::from_vec(a.nrows(), a.ncols() + b.ncols(), [a.as_slice(), b.as_slice()].concat())
         };
         let more = &*self.rows;
-        // What is known of one part alone is known of no row.
+        // A property that only one part has is dropped for all rows.
         let both = rows.variances.as_ref().zip(more.variances.as_ref());
         Rows {
             states: beside(&rows.states, &more.states),
@@ -93,7 +93,7 @@ mod tests {
 
     use super::*;
 
-    /// Rows of movements of these lengths, with noise of velocities or without.
+    /// Rows of movements of these lengths, with or without noise of velocities.
     fn rows(lengths: &[usize], variance: Option<f64>, seed: u64) -> Rows {
         let rng = &mut ChaCha8Rng::seed_from_u64(seed);
         let index = |(trajectory, &length): (usize, &usize)| {
@@ -109,7 +109,7 @@ mod tests {
         }
     }
 
-    /// Some trajectories, counted from 0.
+    /// Selected trajectories, counted from `first`.
     fn part(rows: &Rows, is_chosen: impl Fn(usize) -> bool, first: usize) -> Rows {
         let part = rows.without(|trajectory, _| !is_chosen(trajectory));
         let counted = |index: &SampleIndex| SampleIndex { trajectory: index.trajectory - first, ..*index };
@@ -119,7 +119,7 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(64))]
 
-        /// Rows of all trajectories, and those of some with the means of the others after them, have the same means.
+        /// Rows of all trajectories have the same means as rows of some with the means of the others appended.
         #[test]
         fn means_of_further_rows_are_those_of_all(
             lengths in prop::collection::vec(1usize..20, 2..8),
@@ -139,13 +139,13 @@ mod tests {
             prop_assert_eq!(&found.variances, &literal.variances);
             prop_assert_eq!(&found.indices, &literal.indices);
             prop_assert_eq!(both.recorded(), all.len());
-            // Held-out trajectories go from both.
+            // Held-out trajectories are removed from both.
             let gone = seed as usize % lengths.len();
             let (found, literal) = (both.without(|k, _| k == gone), all.without(|k, _| k == gone));
             prop_assert_eq!(&found.averaged().states, &literal.averaged().states);
         }
 
-        /// What does not go together is refused.
+        /// Incompatible rows are refused.
         #[test]
         fn other_dimensions_and_noise_are_refused(variance in 1e-4f64..0.1, samples in 0usize..12) {
             let (noisy, certain) = (rows(&[5, 6], Some(variance), 1), rows(&[5, 6], None, 1));

@@ -1,4 +1,4 @@
-//! The rows that a fit learns from: steps 1 and 2 of it.
+//! The rows that a fit learns from: its steps 1 and 2.
 
 use std::collections::HashSet;
 
@@ -12,7 +12,7 @@ use crate::rows::thinning::{MIDDLE, thinned};
 use crate::rows::{MOST_ROWS, parts_along};
 use crate::{GpError, Rows};
 
-/// Which rows a fit keeps.
+/// The selection of the rows that a fit keeps.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Selection {
     pub(crate) max_rows: usize,
@@ -27,26 +27,26 @@ pub(crate) struct Selection {
 pub enum Grouping {
     /// One trajectory after the other.
     Trajectories,
-    /// Blocks of time, since there are only one or two trajectories: R² is then too good.
+    /// Blocks of time, because there are only one or two trajectories: R² is then too high.
     BlocksOfTime,
 }
 
-/// Rows that were not used, and why.
+/// Numbers of rows that were not used, by reason.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct RowsDropped {
-    /// In means (S33) with others, which count as one row.
+    /// Merged into means (S33), each of which counts as one row.
     #[serde(default, skip_serializing_if = "none")]
     pub averaged: usize,
     /// Practically at rest.
     pub still: usize,
     /// Slower than their noise.
     pub noisy: usize,
-    /// Beyond `max_rows`: kept are the first of every movement, and of the others evenly many of every stretch of time.
+    /// Beyond `max_rows`: the first row of every movement is kept, and evenly spaced others.
     pub thinned: usize,
-    /// Where rows are of stretches of one constraint each: samples, or means of them, that are in none,
+    /// For rows of stretches of one constraint each: samples, or means of them, in no stretch.
     #[serde(default, skip_serializing_if = "none")]
     pub in_no_stretch: usize,
-    /// and those in stretches that other movements contradict, which count less (S44).
+    /// For rows of stretches: samples in stretches that other movements contradict, which count less (S44).
     #[serde(default, skip_serializing_if = "none")]
     pub contradicted: usize,
 }
@@ -56,46 +56,47 @@ fn none(count: &usize) -> bool {
     *count == 0
 }
 
-/// What rows of stretches (S22) come with.
+/// Additional data of rows of stretches (S22).
 #[derive(Debug, Clone)]
 pub(crate) struct OfStretches {
     /// D (S23), (M).
     pub(crate) weights: Vec<f64>,
-    /// Root mean square of the pushes A⁺b, in units of the state per second; none where b = 0.
+    /// Root mean square of the pushes A⁺b, in units of the state per second; `None` if b = 0.
     pub(crate) push: Option<f64>,
-    /// The task space that they are of, by its place among those of the rows; none: the recorded coordinates.
+    /// The task space of the stretches, as an index into those of the rows; `None`: the recorded coordinates.
     pub(crate) space: Option<usize>,
-    /// How many of them a sample gives, on average.
+    /// Average number of rows per sample.
     pub(crate) of_sample: f64,
 }
 
 /// Rows kept, in the order of trajectories and samples.
 #[derive(Debug, Clone)]
 pub(crate) struct Kept {
-    /// Which of the rows each is, or of all rows of its stretches, (M), and where that was recorded.
+    /// Index of each row, or of each among all rows of its stretches, (M); `indices` holds the recorded sample.
     pub(crate) rows: Vec<usize>,
     pub(crate) indices: Vec<SampleIndex>,
     /// States with their contexts, (n + p, M).
     pub(crate) states: DMatrix<f64>,
-    /// The part of the velocity along the direction of each row, (n, M): the whole but in rows of stretches and of momenta.
+    /// The component of the velocity along the direction of each row, (n, M): the whole velocity except in rows of stretches
+    /// and of momenta.
     pub(crate) velocities: DMatrix<f64>,
-    /// r, the length of that part, (M).
+    /// r, the length of that component, (M).
     pub(crate) speeds: Vec<f64>,
-    /// Whole velocities, (n, M), where rows have parts.
+    /// Whole velocities, (n, M), if rows hold components.
     pub(crate) whole: Option<DMatrix<f64>>,
     pub(crate) variances: Option<Vec<f64>>,
-    /// Where they are of stretches.
+    /// `Some` for rows of stretches.
     pub(crate) of_stretches: Option<OfStretches>,
     pub(crate) groups: Vec<Vec<usize>>,
-    /// Rows whose marginal likelihood sets the amplitudes: random ones, since contiguous rows would make it take errors
-    /// that are correlated along a trajectory for signal.
+    /// Rows whose marginal likelihood determines the amplitudes. They are random, because with contiguous rows it would treat
+    /// errors that are correlated along a trajectory as signal.
     pub(crate) hyper: Vec<usize>,
     pub(crate) grouping: Grouping,
     pub(crate) dropped: RowsDropped,
 }
 
 impl Kept {
-    /// The trajectory that each group is of.
+    /// The trajectory of each group.
     pub(crate) fn trajectories(&self) -> Vec<usize> {
         self.groups.iter().map(|rows| self.indices[rows[0]].trajectory).collect()
     }
@@ -105,7 +106,7 @@ impl Kept {
         self.whole.as_ref().unwrap_or(&self.velocities)
     }
 
-    /// The same rows with every axis multiplied by its factor, and certain velocities. A direction v of a stretch becomes Cv.
+    /// The same rows with each axis multiplied by its factor, and certain velocities. A direction v of a stretch becomes Cv.
     pub(crate) fn scaled(&self, factors: &DVector<f64>) -> Kept {
         let whole = self.whole.as_ref().map(|whole| scaled(whole, factors));
         let along = scaled(&self.velocities, factors);
@@ -118,12 +119,13 @@ impl Kept {
     }
 }
 
-/// Standard deviation of every axis.
+/// Standard deviation of each axis.
 pub(crate) fn spreads(states: &DMatrix<f64>) -> DVector<f64> {
     DVector::from_iterator(states.nrows(), states.row_iter().map(|axis| axis.variance().sqrt()))
 }
 
-/// States (n + p, M) with a factor on every axis that moves, (n), and one on their context that keeps its share of the spread.
+/// States (n + p, M) with a factor on each axis of the state, (n), and a common one on the context that preserves its share of
+/// the spread.
 pub(crate) fn rescaled(states: &DMatrix<f64>, factors: &DVector<f64>) -> DMatrix<f64> {
     let (dim, context_dim) = (factors.len(), states.nrows() - factors.len());
     let spread = spreads(&states.rows(0, dim).into_owned());
@@ -132,7 +134,7 @@ pub(crate) fn rescaled(states: &DMatrix<f64>, factors: &DVector<f64>) -> DMatrix
 }
 
 impl Selection {
-    /// The same with fewer rows at most, for a choice that needs no more.
+    /// The same selection with smaller maxima.
     pub(crate) fn at_most(self, max_rows: usize, hyper_rows: usize) -> Selection {
         Selection { max_rows: self.max_rows.min(max_rows), hyper_rows: self.hyper_rows.min(hyper_rows), ..self }
     }
@@ -157,8 +159,8 @@ impl Selection {
         Ok(())
     }
 
-    /// Keeps rows that move more than their noise, at most `max_rows` of them. Draws one permutation, and before it
-    /// what [`thinned`] does.
+    /// Keeps at most `max_rows` of the rows that move more than their noise. Draws one permutation, and before it the draws of
+    /// [`thinned`].
     pub(crate) fn keep<R: Rng + ?Sized>(&self, rows: &Rows, rng: &mut R) -> Result<Kept, GpError> {
         self.check()?;
         let (samples, before) = (rows.recorded(), rows.thinned_before());
@@ -181,7 +183,7 @@ impl Selection {
         Ok(Kept { hyper, dropped, ..kept })
     }
 
-    /// The same rows and those that [`Selection::keep`] thinned, about `most` of these; none if it kept all.
+    /// The same rows and about `most` of those that [`Selection::keep`] thinned; `None` if it kept all.
     pub(crate) fn keep_all(&self, rows: &Rows, some: &Kept, most: usize) -> Option<Kept> {
         if some.dropped.thinned == 0 {
             return None;
@@ -200,11 +202,11 @@ impl Selection {
         Some(Kept { dropped, ..kept(rows, usable, &enough) })
     }
 
-    /// Rows that move more than their noise, in the order of trajectories and samples, and those that do not.
+    /// Rows that move more than their noise, in the order of trajectories and samples, and counts of the others.
     fn usable(&self, rows: &Rows) -> Result<(Vec<usize>, RowsDropped), GpError> {
         let speeds: Vec<f64> = rows.velocities().column_iter().map(|velocity| velocity.norm()).collect();
         let fastest = speeds.iter().copied().fold(0.0, f64::max);
-        // Squares of what moves may vanish, so that not the speeds are asked.
+        // Tests the velocities, because squares of small speeds may underflow to 0.
         if rows.velocities().amax() == 0.0 {
             return Err(GpError::NoMotion);
         }
@@ -225,7 +227,7 @@ impl Selection {
     }
 }
 
-/// These rows by trajectory, of which each stands together.
+/// These rows by trajectory; the rows of a trajectory are contiguous.
 fn movements<'a>(rows: &'a Rows, usable: &'a [usize]) -> impl Iterator<Item = &'a [usize]> + Clone {
     usable.chunk_by(|&a, &b| rows.indices()[a].trajectory == rows.indices()[b].trajectory)
 }
@@ -250,7 +252,7 @@ fn kept(rows: &Rows, usable: Vec<usize>, grouped: &Grouped) -> Kept {
     }
 }
 
-/// How rows go together: parts a trajectory is cut into.
+/// Grouping of rows: the number of parts into which a trajectory is cut.
 struct Grouped {
     grouping: Grouping,
     parts: usize,
@@ -278,7 +280,7 @@ fn grouped(rows: &Rows, usable: &[usize]) -> Result<Grouped, GpError> {
 }
 
 impl Grouped {
-    /// Positions among `kept`, ordered by trajectory and sample, that are left out together.
+    /// Positions among `kept`, ordered by trajectory and sample, in groups that are left out together.
     fn among(&self, rows: &Rows, kept: &[usize]) -> Vec<Vec<usize>> {
         let positions: Vec<usize> = (0..kept.len()).collect();
         let trajectory = |&at: &usize| rows.indices()[kept[at]].trajectory;
@@ -287,7 +289,7 @@ impl Grouped {
     }
 }
 
-/// Where in `all` each of `some` stands.
+/// The position in `all` of each of `some`.
 pub(crate) fn positions(all: &[usize], some: &[usize]) -> Vec<usize> {
     let place: std::collections::HashMap<usize, usize> = all.iter().enumerate().map(|(at, &row)| (row, at)).collect();
     some.iter().map(|row| place[row]).collect()

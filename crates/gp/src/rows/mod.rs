@@ -19,34 +19,34 @@ use crate::GpError;
 use further::Further;
 use task_space::TaskSpace;
 
-/// Most rows of a model, fitted or read: the Cholesky factor of so many, which its error bars need, takes 0.8 GB.
+/// Maximum number of rows of a model, fitted or read: the Cholesky factor for its error bars takes 0.8 GB.
 pub const MOST_ROWS: usize = 10_000;
 
-/// Observed motion, one row a sample: state with its context, velocity, and the variance of the velocity.
+/// Observed motion, one row per sample: state with context, velocity, and variance of the velocity.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rows {
     states: DMatrix<f64>,
     velocities: DMatrix<f64>,
     variances: Option<Vec<f64>>,
     indices: Vec<SampleIndex>,
-    /// Mu, (n, M), where constraints are at right angles in another metric.
+    /// Mu, (n, M), if constraints are orthogonal in another metric.
     momenta: Option<DMatrix<f64>>,
     noise: Option<f64>,
     switches: Option<Vec<Vec<f64>>>,
     labels: Option<Vec<usize>>,
-    /// Whether they are means (S33) already.
+    /// Whether the rows are already means (S33).
     means: bool,
     task_spaces: Vec<TaskSpace>,
     further: Option<Further>,
 }
 
 impl Rows {
-    /// Rows with exact velocities: `states` and `velocities` (n, M), one column a row, velocities in units of the
-    /// state per second; `indices` (M) holds the trajectory and sample of each.
+    /// Rows with exact velocities: `states` and `velocities` (n, M), one column per row, velocities in units of the state per second;
+    /// `indices` (M) holds the trajectory and sample of each row.
     ///
     /// # Errors
-    /// [`GpError::Lengths`], [`GpError::Value`] for what is not finite, or [`GpError::Overflow`] for speeds whose squares
-    /// are not.
+    /// [`GpError::Lengths`], [`GpError::Value`] for numbers that are not finite, or [`GpError::Overflow`] for speeds whose squares are
+    /// not.
     pub fn new(states: DMatrix<f64>, velocities: DMatrix<f64>, indices: Vec<SampleIndex>) -> Result<Self, GpError> {
         let expected = states.ncols();
         let same =
@@ -65,7 +65,7 @@ impl Rows {
             if let Some(at) = matrix.iter().position(|value| !value.is_finite()) {
                 return Err(GpError::Value { what, row: at / matrix.nrows(), value: matrix[at] });
             }
-            // Room for sums over rows and dimensions.
+            // Leaves room for sums over rows and dimensions.
             if !(0.0..1e300).contains(&matrix.norm_squared()) {
                 return Err(GpError::Overflow { what: if what == "state" { "distance" } else { "speed" } });
             }
@@ -85,12 +85,12 @@ impl Rows {
         })
     }
 
-    /// Adds the context c of every row, (p, M): what the motion depends on and what is constant during a movement, such as a
-    /// goal. It counts as further coordinates of the state along which nothing moves, so that it should spread about as much as the
+    /// Adds the context c of every row, (p, M): quantities on which the motion depends and that are constant during a movement, such as a
+    /// goal. They count as further coordinates of the state along which nothing moves, so that they should spread about as much as the
     /// state ([`SlopeGp::context_factors`](crate::SlopeGp::context_factors)).
     ///
     /// # Errors
-    /// [`GpError::Lengths`], [`GpError::Value`] for what is not finite, or [`GpError::Overflow`].
+    /// [`GpError::Lengths`], [`GpError::Value`] for numbers that are not finite, or [`GpError::Overflow`].
     pub fn with_context(self, context: &DMatrix<f64>) -> Result<Self, GpError> {
         let (found, expected) = (context.ncols(), self.len());
         if found != expected {
@@ -108,10 +108,10 @@ impl Rows {
         Ok(Rows { states, ..self })
     }
 
-    /// Adds uncertainty of the velocities: `variances` (M), of each row's velocity along every axis.
+    /// Adds uncertainty of the velocities: `variances` (M) of each row's velocity along each axis.
     ///
     /// # Errors
-    /// [`GpError::Lengths`], or [`GpError::Value`] for what is negative or not finite.
+    /// [`GpError::Lengths`], or [`GpError::Value`] for numbers that are negative or not finite.
     pub fn with_variances(self, variances: Vec<f64>) -> Result<Self, GpError> {
         let (found, expected) = (variances.len(), self.len());
         if found != expected {
@@ -123,17 +123,17 @@ impl Rows {
         }
     }
 
-    /// The same rows with velocities that are taken as exact.
+    /// The same rows with velocities that are treated as exact.
     #[must_use]
     pub fn with_certain_velocities(self) -> Self {
         Rows { variances: None, ..self }
     }
 
-    /// Constraints are at right angles in the metric M(x): u = π − M⁻¹Aᵀ(AM⁻¹Aᵀ)⁻¹(Aπ), as where a robot's mass matrix weighs its joints.
-    /// `momenta` (n, M) holds M(x)u of each row, from which (S31) follows in place of (S1).
+    /// Declares that constraints are orthogonal projections in the metric M(x): u = π − M⁻¹Aᵀ(AM⁻¹Aᵀ)⁻¹(Aπ), for example if a robot's
+    /// mass matrix weights its joints. `momenta` (n, M) holds M(x)u of each row; (S31) then replaces (S1).
     ///
     /// # Errors
-    /// [`GpError::Lengths`], or [`GpError::Value`] for what is not finite or where uᵀMu is not positive though u ≠ 0.
+    /// [`GpError::Lengths`], or [`GpError::Value`] for numbers that are not finite, or if uᵀMu is not positive though u ≠ 0.
     pub fn with_momenta(self, momenta: DMatrix<f64>) -> Result<Self, GpError> {
         let found = if momenta.nrows() == self.dim() { momenta.ncols() } else { 0 };
         if found != self.len() {
@@ -151,15 +151,15 @@ impl Rows {
         }
     }
 
-    /// Adds the front end's estimates: the standard deviation of its noise, in units of the state, and for
-    /// every sample of every trajectory the probability that a constraint switched before it.
+    /// Adds the front end's estimates: the standard deviation of its noise, in units of the state, and for every sample of every
+    /// trajectory the probability that a constraint switched before it.
     #[must_use]
     pub fn with_findings(self, noise: f64, switches: Option<Vec<Vec<f64>>>) -> Self {
         Rows { noise: Some(noise), switches, ..self }
     }
 
-    /// Adds which constraint acted on each row, as any number for each, (M): constraints switch where the label of one row of a movement
-    /// differs from that of the row before, and nowhere else. Stretches (S22) are then those between switches.
+    /// Adds the label of the constraint on each row, as any number, (M). Constraints switch where the label of a row differs from that of
+    /// the previous row of the movement, and nowhere else. Stretches (S22) then lie between switches.
     ///
     /// # Errors
     /// [`GpError::Lengths`].
@@ -171,8 +171,8 @@ impl Rows {
         Ok(Rows { labels: Some(labels), ..self })
     }
 
-    /// Adds spaces in which constraints may be constant beside the recorded coordinates, such as where a robot's links are: stretches are
-    /// looked for in each (S40).
+    /// Adds spaces in which constraints may be constant besides the recorded coordinates, such as positions of a robot's links. Each is
+    /// searched for stretches (S40).
     ///
     /// # Errors
     /// [`GpError::Lengths`] for a space without a finite Jacobian (m, n) of each row; m is the same for all.
@@ -195,17 +195,17 @@ impl Rows {
         &self.velocities
     }
 
-    /// Variance of every row's velocity along each axis, (M); none if they are certain.
+    /// Variance of each row's velocity along each axis, (M); `None` if velocities are certain.
     pub fn variances(&self) -> Option<&[f64]> {
         self.variances.as_deref()
     }
 
-    /// M(x)u of each row, (n, M); none in the metric of the coordinates themselves.
+    /// M(x)u of each row, (n, M); `None` in the metric of the coordinates themselves.
     pub fn momenta(&self) -> Option<&DMatrix<f64>> {
         self.momenta.as_ref()
     }
 
-    /// The part of each velocity along the direction of its equation, (n, M): along M(x)u (S31), or all of it (S1).
+    /// The component of each velocity along the direction of its equation, (n, M): along M(x)u (S31), or the whole velocity (S1).
     pub(crate) fn parts(&self) -> Cow<'_, DMatrix<f64>> {
         match &self.momenta {
             Some(momenta) => Cow::Owned(parts_along(&self.velocities, momenta)),
@@ -213,35 +213,34 @@ impl Rows {
         }
     }
 
-    /// Which sample of which trajectory every row is.
+    /// Trajectory and sample of each row.
     pub fn indices(&self) -> &[SampleIndex] {
         &self.indices
     }
 
-    /// Standard deviation of the noise on recorded positions that the front end found, in units of the state.
+    /// Standard deviation of the noise on recorded positions estimated by the front end, in units of the state.
     pub fn noise(&self) -> Option<f64> {
         self.noise
     }
 
-    /// For every trajectory and sample the probability that a constraint switched before it, where the front end finds
-    /// such.
+    /// For each sample of each trajectory, the probability that a constraint switched before it, if the front end estimates it.
     pub fn switches(&self) -> Option<&[Vec<f64>]> {
         self.switches.as_deref()
     }
 
-    /// The label of the constraint on every row, (M); none where switches are not known.
+    /// The label of the constraint on each row, (M); `None` if switches are not known.
     pub fn labels(&self) -> Option<&[usize]> {
         self.labels.as_deref()
     }
 
-    /// Spaces in which constraints may be constant beside the recorded coordinates.
+    /// Spaces in which constraints may be constant besides the recorded coordinates.
     pub fn task_spaces(&self) -> &[TaskSpace] {
         &self.task_spaces
     }
 
-    /// Share of squares by which a step between two samples differs from the velocity there, where velocities were found
-    /// from positions: the median of ‖û_{i+1} − û_i‖²/4‖û_i‖² over samples next to each other. Positions alone do not
-    /// show whether the motion was steady or in steps of that size.
+    /// Relative squared difference between a step from one sample to the next and the velocity there, if velocities were computed from
+    /// positions: the median of ‖û_{i+1} − û_i‖²/4‖û_i‖² over successive samples. Positions alone do not show whether the motion was
+    /// steady or in steps of that size.
     pub fn step_change(&self) -> Option<f64> {
         self.switches.as_ref()?;
         let next_to_each_other = |at: &usize| {
@@ -277,7 +276,7 @@ impl Rows {
     }
 }
 
-/// The part of each velocity along a direction of any length; zero along none. All (n, M).
+/// The component of each velocity along a direction of any length; zero if the direction is zero. All (n, M).
 pub(crate) fn parts_along(velocities: &DMatrix<f64>, directions: &DMatrix<f64>) -> DMatrix<f64> {
     let mut parts = directions.clone();
     for (mut part, velocity) in parts.column_iter_mut().zip(velocities.column_iter()) {

@@ -1,31 +1,31 @@
 //! Relative noise variance of each row: D of (S6).
 
-/// Least weight: no row is believed more than a thousand times the median.
+/// Minimum weight: no row counts more than a thousand times as much as the median.
 const LEAST: f64 = 1e-3;
-/// Longest policy that is believed, in root mean squares of the speeds seen.
+/// Maximum assumed length of the policy, in root mean squares of the observed speeds.
 const LONGEST: f64 = 3.0;
 
-/// (S2): D of slope rows, from the variance s² of each velocity along an axis, the speeds r and what the policy's length
-/// g is thought to be there. A sample whose motion is nearly blocked, r ≪ g, says nearly nothing.
+/// (S2): D of slope rows, from the variance s² of each velocity along an axis, the speeds r and estimates g of the policy's
+/// length. A sample whose motion is nearly blocked, r ≪ g, has almost no weight.
 pub(crate) fn slope_weights(variances: &[f64], speeds: &[f64], policy_lengths: &[f64]) -> Vec<f64> {
     let floor = 1e-9 * speeds.iter().map(|r| r * r).sum::<f64>() / speeds.len() as f64;
     let each = variances.iter().zip(speeds.iter().zip(policy_lengths));
     relative(each.map(|(s2, (r, g))| s2 * (g / r).max(1.0).powi(2) + floor).collect())
 }
 
-/// (S18): D of slope rows whose velocities are certain, from the speeds r and the length of a policy there. What is not in
-/// the model, a small press or undeclared noise, changes slow rows most.
+/// (S18): D of slope rows with certain velocities, from the speeds r and the length of a policy there. Unmodelled effects,
+/// such as a small push or undeclared noise, change slow rows most.
 pub(crate) fn certain_weights(speeds: &[f64], policy_lengths: &[f64]) -> Vec<f64> {
     let most = LONGEST * (speeds.iter().map(|r| r * r).sum::<f64>() / speeds.len() as f64).sqrt();
     relative(speeds.iter().zip(policy_lengths).map(|(r, g)| (g.min(most) / r).max(1.0).powi(2)).collect())
 }
 
-/// (R1): D of direct rows; the velocity itself is the target, whose mean square a component is `unit_squared`.
+/// (R1): D of direct rows. The target is the velocity itself, with mean square `unit_squared` per component.
 pub(crate) fn direct_weights(variances: &[f64], unit_squared: f64) -> Vec<f64> {
     relative(variances.iter().map(|s2| s2 + 1e-9 * unit_squared).collect())
 }
 
-/// In units of the median.
+/// Divides by the median.
 pub(crate) fn relative(variances: Vec<f64>) -> Vec<f64> {
     let mut sorted = variances.clone();
     sorted.sort_by(f64::total_cmp);
@@ -40,7 +40,7 @@ mod tests {
 
     use super::*;
 
-    /// (S18) as it is written.
+    /// (S18), evaluated literally.
     fn literal(r: &[f64], g: &[f64]) -> Vec<f64> {
         let rms = (r.iter().map(|r| r * r).sum::<f64>() / r.len() as f64).sqrt();
         let tau: Vec<f64> = (0..r.len()).map(|i| (g[i].min(3.0 * rms) / r[i]).max(1.0).powi(2)).collect();
@@ -51,8 +51,8 @@ mod tests {
     }
 
     proptest! {
-        /// The unit of speed does not matter; half of the rows weigh at most 1; where the policy is as long as what was seen
-        /// all weigh the same.
+        /// The unit of speed does not matter; half of the rows weigh at most 1; if the policy is as long as the observed
+        /// velocities, all weights are equal.
         #[test]
         fn certain_weights_are_relative(
             rows in prop::collection::vec((0.01..3.0f64, 0.0..9.0f64), 3..20),

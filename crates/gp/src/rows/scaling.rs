@@ -5,14 +5,15 @@ use serde::{Deserialize, Serialize};
 
 use crate::GpError;
 
-/// Dimensions of a state that stand on the stack.
+/// Maximum dimension of a state that is stored on the stack.
 pub(crate) const FEW: usize = 32;
 
 thread_local! {
     static MANY: RefCell<Vec<f64>> = const { RefCell::new(Vec::new()) };
 }
 
-/// Scaled coordinates z = (x − μ)/S. One S for all axes: a gradient field stays one only under a common scale.
+/// Scaled coordinates z = (x − μ)/S. One S for all axes, because a gradient field remains one only under a common
+/// scale.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Scaling {
@@ -23,7 +24,7 @@ pub(crate) struct Scaling {
 }
 
 impl Scaling {
-    /// Of states (n, M).
+    /// The scaling of states (n, M).
     pub(crate) fn of(states: &DMatrix<f64>) -> Result<Self, GpError> {
         let count = states.ncols() as f64;
         let mean: Vec<f64> = states.row_iter().map(|axis| axis.iter().sum::<f64>() / count).collect();
@@ -31,7 +32,7 @@ impl Scaling {
             |(axis, mean): (usize, &f64)| states.row(axis).iter().map(|x| (x - mean).powi(2)).sum::<f64>() / count;
         let variances: f64 = mean.iter().enumerate().map(variance).sum();
         let scale = (variances / mean.len() as f64).sqrt();
-        // The mean of equal numbers may differ from them by its rounding.
+        // The mean of equal numbers may differ from them by rounding.
         let furthest =
             states.row_iter().zip(&mean).map(|(axis, mean)| axis.add_scalar(-mean).amax()).fold(0.0, f64::max);
         if furthest <= 1e-14 * states.amax() {
@@ -53,7 +54,8 @@ impl Scaling {
         DVector::from_fn(state.len(), |k, _| self.coordinate(k, state[k]))
     }
 
-    /// Evaluates at z of one state, (n). Allocates nothing up to [`FEW`] dimensions, and beyond once a thread.
+    /// Evaluates at z of one state, (n). Does not allocate for up to [`FEW`] dimensions; otherwise allocates once per
+    /// thread.
     pub(crate) fn with_coordinates<T>(&self, state: &[f64], evaluate: impl FnOnce(&[f64]) -> T) -> T {
         let into = |z: &mut [f64]| {
             for (k, (z, &x)) in z.iter_mut().zip(state).enumerate() {

@@ -1,4 +1,4 @@
-//! Some of the rows.
+//! Subsets of the rows.
 
 use std::collections::HashSet;
 
@@ -6,7 +6,7 @@ use crate::Rows;
 use crate::rows::thinning::{MIDDLE, thinned};
 
 impl Rows {
-    /// The rows whose sample is not held out: `held_out(trajectory, sample)`.
+    /// The rows whose samples are not held out by `held_out(trajectory, sample)`.
     #[must_use]
     pub fn without(&self, held_out: impl Fn(usize, usize) -> bool) -> Self {
         let stays = |row: usize| !held_out(self.indices[row].trajectory, self.indices[row].sample);
@@ -14,7 +14,7 @@ impl Rows {
         Rows { further, ..self.chosen(&stays) }
     }
 
-    /// Some of the rows, without further ones.
+    /// The chosen rows, without further ones.
     pub(crate) fn chosen(&self, is_chosen: &dyn Fn(usize) -> bool) -> Self {
         let rows: Vec<usize> = (0..self.len()).filter(|&row| is_chosen(row)).collect();
         Rows {
@@ -36,7 +36,7 @@ impl Rows {
         }
     }
 
-    /// At most so many of the rows: the first of every trajectory, and of the others evenly many of every stretch of time.
+    /// At most `most` of the rows: the first of every trajectory, and evenly spaced others.
     #[must_use]
     pub fn at_most(&self, most: usize) -> Rows {
         let all: Vec<usize> = (0..self.len()).collect();

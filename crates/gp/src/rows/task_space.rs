@@ -1,10 +1,10 @@
 use nalgebra::{DMatrix, DVector};
 
-/// A space in whose coordinates a constraint may be constant: the recorded coordinates themselves, or what a Jacobian makes
-/// of their velocities, such as a hand's position.
+/// A space in whose coordinates a constraint may be constant: the recorded coordinates themselves, or the image of their velocities under a
+/// Jacobian, such as a hand's position.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TaskSpace {
-    /// Of every row, (m, n); none for the recorded coordinates.
+    /// Jacobian of each row, (m, n); `None` for the recorded coordinates.
     pub(crate) jacobians: Option<Vec<DMatrix<f64>>>,
 }
 
@@ -14,12 +14,12 @@ impl TaskSpace {
         TaskSpace { jacobians: None }
     }
 
-    /// v = J(x) u, with J (m, n) of every row, in their order.
+    /// v = J(x) u, with the J (m, n) of each row, in order.
     pub fn of_jacobians(jacobians: Vec<DMatrix<f64>>) -> Self {
         TaskSpace { jacobians: Some(jacobians) }
     }
 
-    /// The same space where velocities are multiplied by these factors (n) first, as those learnt from are.
+    /// The same space for velocities that were multiplied by these factors (n), as those learnt from are.
     #[must_use]
     pub fn scaled(mut self, factors: &DVector<f64>) -> Self {
         for jacobian in self.jacobians.iter_mut().flatten() {
@@ -37,14 +37,14 @@ impl TaskSpace {
         })
     }
 
-    /// The same of other rows, whose Jacobians `of` makes of these.
+    /// The same space for other rows, whose Jacobians `of` computes from these.
     #[must_use]
     pub(crate) fn with_rows(&self, of: impl FnOnce(&[DMatrix<f64>]) -> Vec<DMatrix<f64>>) -> Self {
         TaskSpace { jacobians: self.jacobians.as_deref().map(of) }
     }
 
-    /// Orthonormal directions (m, m') in which anything ever moves, and the mean square of what unit velocities do along
-    /// the least of them: a planar arm moves in a plane of space only. None if there is none.
+    /// Orthonormal directions (m, m') in which the space ever moves, and the mean square response to unit velocities along the least of
+    /// them: a planar arm moves only in a plane of space. `None` if there is none.
     pub(crate) fn moved(&self, dim: usize) -> Option<(DMatrix<f64>, f64)> {
         if self.jacobians.is_none() {
             return Some((DMatrix::identity(dim, dim), 1.0));
@@ -52,8 +52,8 @@ impl TaskSpace {
         self.gains().map(|(directions, gains)| (directions, gains.min()))
     }
 
-    /// W of (S40), (m', m), of some of the rows, for which WJJᵀWᵀ is I in their mean: noise of u is then the same along all `directions` in
-    /// which anything moves (m, m'), whatever their units. None of the recorded coordinates, or where nothing moves.
+    /// W of (S40), (m', m), for some of the rows, which makes the mean of WJJᵀWᵀ equal I. Noise of u is then the same along all
+    /// `directions` of motion (m, m'), whatever their units. `None` for the recorded coordinates, or if nothing moves.
     pub(crate) fn evening(&self, directions: &DMatrix<f64>, rows: &[usize]) -> Option<DMatrix<f64>> {
         let jacobians = self.jacobians.as_ref()?;
         let own = |&row: &usize| directions.tr_mul(&jacobians[row]);
@@ -64,7 +64,7 @@ impl TaskSpace {
         (least > 0.0).then(|| DMatrix::from_diagonal(&evening) * (directions * eigen.eigenvectors).transpose())
     }
 
-    /// Directions in which anything moves, and the mean square of what unit velocities do along each.
+    /// Directions of motion, and the mean square response to unit velocities along each.
     pub(crate) fn gains(&self) -> Option<(DMatrix<f64>, DVector<f64>)> {
         let jacobians = self.jacobians.as_ref()?;
         let m = jacobians.first()?.nrows();
@@ -76,5 +76,5 @@ impl TaskSpace {
     }
 }
 
-/// Share of the mean square below which a direction never moves.
+/// Share of the mean square below which there is no motion along a direction.
 const NEVER: f64 = 1e-12;

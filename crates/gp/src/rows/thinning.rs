@@ -1,17 +1,16 @@
-//! Which rows to learn from where there are more than a fit can take.
+//! Selects rows if there are more than a fit can use.
 
-/// (√5 − 1)/2: its multiples meet no period of a recording.
+/// (√5 − 1)/2: its multiples do not coincide with a period of a recording.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
-/// Of [`thinned`], where nothing is drawn.
+/// Offset of [`thinned`] if nothing is drawn.
 pub(crate) const MIDDLE: f64 = 0.5;
 
-/// At most `most` rows of these movements; all if they are no more.
+/// At most `most` rows of these movements; all if there are no more.
 ///
-/// The first row of every movement, and of the others evenly many of every stretch of time. Drawn at random, rows leave gaps,
-/// and most of all at the starts: a movement is fast there, and its first sample is often the only one at the rim of
-/// where anything was recorded. Where starts alone would be more than half of the rows, half are starts, and neither these nor the
-/// others are at equal distances, which may be those of movements. `offset`, in [0, 1), is asked for where there are more, and says
-/// where to begin.
+/// Takes the first row of every movement, and evenly spaced others. Rows drawn at random would leave gaps, above all at the starts: a
+/// movement is fast there, and its first sample is often the only one at the rim of the recorded region. If starts alone would be more than
+/// half of the rows, half are starts, and neither these nor the others are equally spaced, because the spacing might match the length of
+/// movements. `offset` is called only if there are more than `most` rows; it returns the first position, in [0, 1).
 pub(crate) fn thinned<'a>(
     movements: impl Iterator<Item = &'a [usize]> + Clone,
     most: usize,
@@ -33,21 +32,21 @@ pub(crate) fn thinned<'a>(
     [some(&starts, most - of_others), some(&others, of_others)].concat()
 }
 
-/// At most `most` of so many places, evenly spaced from the first on.
+/// At most `most` of `count` places, evenly spaced from the first on.
 pub(crate) fn every_so_many(count: usize, most: usize) -> Vec<usize> {
     let taken = count.min(most);
     (0..taken).map(|at| at * count / taken).collect()
 }
 
-/// One of each of `taken` parts, equally long but for rounding, of at least as many places, at another place in each: `offset` of the
-/// first.
+/// One place from each of `taken` parts of equal length (up to rounding) of at least as many places, at a different position in each;
+/// `offset` is the position in the first.
 pub(crate) fn scattered(count: usize, taken: usize, offset: f64) -> impl Iterator<Item = usize> {
     let begin = move |part: usize| part * count / taken;
     let within = move |part: usize| (GOLDEN * part as f64 + offset).fract() * (begin(part + 1) - begin(part)) as f64;
     (0..taken).map(move |part| begin(part) + within(part) as usize)
 }
 
-/// So many of the rows, equally far from each other, from `offset` of that distance on.
+/// `count` of the rows, equally spaced, starting at `offset` times the spacing.
 fn evenly(rows: &[usize], count: usize, offset: f64) -> impl Iterator<Item = usize> {
     let apart = rows.len() as f64 / count as f64;
     (0..count).map(move |at| rows[((at as f64 + offset) * apart) as usize])
@@ -61,7 +60,7 @@ mod tests {
 
     use super::*;
 
-    /// Movements of these lengths, their rows numbered throughout.
+    /// Movements of these lengths; their rows are numbered consecutively.
     fn movements(lengths: &[usize]) -> Vec<Vec<usize>> {
         let begins = lengths.iter().scan(0, |sum, length| {
             *sum += length;
@@ -71,8 +70,8 @@ mod tests {
     }
 
     proptest! {
-        /// As many as asked for, none twice, every start or half of all rows, and no stretch left out that is longer than the others by more
-        /// than a row or a start between, or twice as long where starts are many.
+        /// The result has the requested size without duplicates, contains every start or as many as half of all rows, and leaves no gap
+        /// that exceeds the others by more than a row or a start in between, or by a factor of two if there are many starts.
         #[test]
         fn starts_and_every_stretch_of_time_are_kept(
             lengths in prop::collection::vec(1usize..40, 1..12),
@@ -100,7 +99,7 @@ mod tests {
             }
         }
 
-        /// Where nothing has to go, nothing is drawn, and the order stays.
+        /// If nothing has to be dropped, nothing is drawn, and the order is kept.
         #[test]
         fn few_rows_stay_as_they_are(lengths in prop::collection::vec(1usize..40, 1..12), more in 0usize..5) {
             let movements = movements(&lengths);

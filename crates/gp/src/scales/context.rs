@@ -1,4 +1,4 @@
-//! How much a context counts beside the state.
+//! Weight of a context relative to the state.
 
 use nalgebra::DVector;
 use rand::Rng;
@@ -9,15 +9,15 @@ use crate::slope::data::SlopeData;
 use crate::slope::slope_gp::SlopeGp;
 use crate::{GpError, Rows};
 
-/// Rows at most, and those of them that set the amplitudes.
+/// Maximum number of rows, and number of rows that determine the amplitudes.
 const ROWS: usize = 300;
 const HYPER_ROWS: usize = 150;
-/// What the spread of a context is worth, in that of the state: tried one after the other.
+/// Spread of a context in units of the state's spread: the values to try, in this order.
 const WORTH: [f64; 4] = [1.0, 0.5, 0.25, 2.0];
 
 impl SlopeGp {
-    /// A factor for every context, (p): each spreads like the state then, times one factor for all that predicts left-out movements
-    /// best. Contexts that are the same everywhere keep their unit. At most four fits to 300 rows.
+    /// A factor for each context, (p). It gives the context the spread of the state, times one common factor: the one that best
+    /// predicts left-out movements. Constant contexts keep their unit. At most four fits to 300 rows.
     ///
     /// # Errors
     /// As [`SlopeGp::fit`].
@@ -41,7 +41,7 @@ impl SlopeGp {
         Ok(alike * best.0)
     }
 
-    /// R² with contexts times their factors; none without Cholesky factor.
+    /// R² with contexts multiplied by their factors; `None` without a Cholesky factor.
     fn left_out_in(&self, kept: &Kept, factors: &DVector<f64>) -> Option<f64> {
         let mut kept = Kept { variances: None, ..kept.clone() };
         let dim = kept.velocities.nrows();

@@ -1,7 +1,8 @@
-//! The unit of each axis, learnt: constraints act at right angles in some units only.
+//! Learns the unit of each axis: constraints project at right angles in certain units only.
 //!
-//! With z = Cx the right coordinates, C diagonal, and m = C², the policy is −M⁻¹∇φ: (S1) becomes −uᵀ∇φ(x) = uᵀMu, linear in m
-//! and φ together. Left-out errors are linear in targets, so those of each axis alone give the left-out error of every m.
+//! Let z = Cx be the right coordinates, C diagonal, and m = C². The policy is then −M⁻¹∇φ, and (S1) becomes −uᵀ∇φ(x) = uᵀMu, which is
+//! linear in m and φ together. Left-out errors are linear in the targets, so the errors of each axis alone determine the left-out error of
+//! every m.
 
 mod context;
 mod quotient;
@@ -24,19 +25,20 @@ use crate::stretches::{Stretches, Switches};
 use crate::{GpError, Rows};
 use quotient::least_error;
 
-/// Rows at most, and those of them that set the amplitudes: scales are few.
+/// Maximum number of rows, and number of rows that determine the amplitudes: there are few scales to learn.
 const ROWS: usize = 600;
 const HYPER_ROWS: usize = 300;
-/// Fits one after the other, each in the units that the one before found.
+/// Number of successive fits, each in the units that the previous one found.
 const ROUNDS: usize = 6;
-/// Scales that differ by less than this share are one.
+/// Scales that differ by less than this share count as equal.
 const SAME: f64 = 0.05;
 
-/// Share of the left-out error in recorded units above which other units that stay are given up: half of it is needed.
+/// The search ends at units that stay the same and leave more than this share of the left-out error in recorded units; acceptance requires
+/// at most half.
 const HOPELESS: f64 = 0.75;
-/// Share of the movements that must have stretches: what they leave and what samples leave is compared as it is.
+/// Share of the movements that must have stretches, because the errors left by stretches and by samples are compared directly.
 const COVERED: f64 = 0.5;
-/// How many times the spread of an axis may be worth that of another.
+/// Maximum ratio of one axis's weight to another's, each multiplied by the axis's spread.
 const MOST_WORTH: f64 = 100.0;
 
 /// Units that predict left-out movements better than those recorded.
@@ -44,13 +46,13 @@ const MOST_WORTH: f64 = 100.0;
 pub struct LearntScales {
     /// Factor on each axis, (n); the first is 1.
     pub factors: Vec<f64>,
-    /// 1 − R² as recorded, and in these units.
+    /// 1 − R² in the recorded units, and in these.
     pub left_out: (f64, f64),
     /// t of the mean gain per trajectory.
     pub t: f64,
 }
 
-/// A fit in some units.
+/// A fit in certain units.
 struct Round {
     factors: DVector<f64>,
     /// Whole velocities u, (n, M).
@@ -61,7 +63,7 @@ struct Round {
 }
 
 impl Round {
-    /// With every axis multiplied by its factor; none without Cholesky factor.
+    /// The fit with every axis multiplied by its factor; `None` without a Cholesky factor.
     fn new(kept: &Kept, blocks: Vec<Block>, factors: DVector<f64>) -> Option<Round> {
         let kept = kept.scaled(&factors);
         let weights = kept.of_stretches.as_ref().map_or_else(|| vec![1.0; kept.speeds.len()], |of| of.weights.clone());
@@ -79,13 +81,13 @@ impl Round {
         1.0 - self.left_out().r_squared
     }
 
-    /// The factors of the next round (S25); none without Cholesky factor.
+    /// The factors of the next round (S25); `None` without a Cholesky factor.
     fn improved(&self) -> Option<DVector<f64>> {
         let axes = self.data.axis_errors(&self.velocities, &self.blocks, &self.fit)?;
         Some(self.factors.component_mul(&least_error(&axes.errors, &axes.targets).map(f64::sqrt)))
     }
 
-    /// Left-out squared error of each trajectory, at most that of predicting nothing, as a share of everything to predict.
+    /// Left-out squared error of each trajectory, at most that of predicting nothing, as a share of the total to predict.
     fn shares(&self) -> Vec<f64> {
         let SlopeData { targets, noise_weights, groups, .. } = &self.data;
         let weighed = |of: &DMatrix<f64>, rows: &[usize]| -> f64 {
@@ -106,8 +108,8 @@ impl Round {
 }
 
 impl SlopeGp {
-    /// Learns a factor for every axis with its first family; none if the units recorded are as good, in another metric, or where nothing tells.
-    /// At most eight fits to 600 rows, and as many to rows of stretches where constraints may push and do.
+    /// Learns a factor for each axis with its first family; `None` if the recorded units are as good, in another metric, or if the data are
+    /// uninformative. At most eight fits to 600 rows, and as many to rows of stretches if constraints may push and do.
     ///
     /// # Errors
     /// As [`SlopeGp::fit`].
@@ -131,7 +133,8 @@ impl SlopeGp {
     }
 }
 
-/// Rows of stretches, found with every axis divided by its `spread`, in the recorded units; none where nothing pushes, or of few movements.
+/// Rows of stretches, in the recorded units; stretches are found with every axis divided by its `spread`. `None` if nothing pushes, or if
+/// they cover few movements.
 fn stretches(rows: &Rows, kept: &Kept, selection: &Selection, spread: &DVector<f64>) -> Option<Kept> {
     let (dim, factors) = (rows.dim(), spread.map(f64::recip));
     let states = rescaled(rows.states(), &factors);
@@ -148,7 +151,7 @@ fn stretches(rows: &Rows, kept: &Kept, selection: &Selection, spread: &DVector<f
     (covered(&alike, &own, kept) >= COVERED).then(|| own.scaled(spread))
 }
 
-/// Units in which these rows are predicted better than in the recorded ones; axes vary by `spread`.
+/// Units in which these rows are predicted better than in the recorded ones; `spread` is that of each axis.
 fn better_units(kept: &Kept, blocks: &[Block], spread: &DVector<f64>) -> Option<LearntScales> {
     let round = |factors| Round::new(kept, blocks.to_vec(), factors);
     let recorded = round(DVector::repeat(spread.len(), 1.0)).filter(|round| !round.left_out().is_nearly_exact())?;
@@ -157,7 +160,7 @@ fn better_units(kept: &Kept, blocks: &[Block], spread: &DVector<f64>) -> Option<
     for _ in 0..ROUNDS {
         let Some(now) = factors.take().and_then(round) else { break };
         factors = now.improved();
-        // Further rounds find nearly these units again, and they are nowhere near being taken.
+        // Further rounds would find nearly the same units, and these are far from acceptance.
         let stays = factors.as_ref().is_some_and(|next| alike(next, &now.factors));
         if stays && now.unexplained() > HOPELESS * recorded.unexplained() {
             return None;
@@ -171,19 +174,19 @@ fn better_units(kept: &Kept, blocks: &[Block], spread: &DVector<f64>) -> Option<
         Some(plain) if plain.unexplained() <= best.unexplained() => plain,
         _ => best,
     };
-    // An axis that is worth next to nothing was explained away, not measured.
+    // An axis with nearly no weight was fitted away, not measured.
     let worth = best.factors.component_mul(spread);
     let sound = worth.max() <= MOST_WORTH * worth.min();
     if sound { accepted(recorded, best, kept) } else { None }
 }
 
-/// Whether factors that differ by one for all are the same, nearly.
+/// Whether factors are nearly equal, up to a common factor.
 fn alike(a: &DVector<f64>, b: &DVector<f64>) -> bool {
     let ratios = a.component_div(b);
     ratios.max() <= (1.0 + SAME) * ratios.min()
 }
 
-/// Factors relative to their median, with a power of ten, times 1 or a degree in radians, in place of what is close to it: most
+/// Replaces factors relative to their median by the nearest power of ten, times 1 or a degree in radians, if they are close to it. Most
 /// mixed units are millimetres beside metres, or degrees beside radians.
 fn in_plain_units(factors: &DVector<f64>) -> DVector<f64> {
     let reference = upper_median(factors.as_slice().to_vec()).unwrap_or(1.0);
@@ -195,7 +198,7 @@ fn in_plain_units(factors: &DVector<f64>) -> DVector<f64> {
     })
 }
 
-/// The scales of `learnt`, if they are better by more than chance and make a difference.
+/// The scales of `learnt`, if they improve prediction by more than chance and change the policy.
 fn accepted(recorded: Round, learnt: Round, kept: &Kept) -> Option<LearntScales> {
     let factors: Vec<f64> = learnt.factors.iter().map(|factor| factor / learnt.factors[0]).collect();
     let (least, most) = factors.iter().fold((1.0_f64, 1.0_f64), |(least, most), &f| (least.min(f), most.max(f)));

@@ -5,12 +5,13 @@ use nalgebra::{DMatrix, DVector};
 use crate::evidence::Evidence;
 use crate::evidence::lbfgs::{Bounds, Curvature, Limits, minimise};
 
-/// |log m| at most: an axis that hardly moves is not known any better.
+/// Limit on |log m|: for an axis that hardly moves, larger values are not better determined.
 const MOST: f64 = 14.0;
-/// The logarithm of the quotient to nine digits.
+/// Determines the logarithm of the quotient to nine digits.
 const LIMITS: Limits = Limits { iterations: 200, tolerance: 2.2e-9 };
 
-/// m ≥ 0, (n), with the least mᵀEm / mᵀYm, from equal ones and from the generalised eigenvectors; geometric mean 1.
+/// m ≥ 0, (n), with the least mᵀEm / mᵀYm. The search starts from equal entries and from the generalised eigenvectors;
+/// the result has geometric mean 1.
 pub(super) fn least_error(errors: &DMatrix<f64>, targets: &DMatrix<f64>) -> DVector<f64> {
     let dim = errors.nrows();
     let bounds = Bounds { lower: DVector::repeat(dim, -MOST), upper: DVector::repeat(dim, MOST) };
@@ -23,7 +24,7 @@ pub(super) fn least_error(errors: &DMatrix<f64>, targets: &DMatrix<f64>) -> DVec
     best.map(|log| (log - middle).exp())
 }
 
-/// log(mᵀEm / mᵀYm) and its gradient by log m.
+/// log(mᵀEm / mᵀYm) and its gradient with respect to log m.
 fn quotient(errors: &DMatrix<f64>, targets: &DMatrix<f64>, log: &DVector<f64>) -> Option<Evidence> {
     let m = log.map(f64::exp);
     let (left, all) = (errors * &m, targets * &m);
@@ -79,12 +80,12 @@ mod tests {
             }
         }
 
-        /// Errors that vanish for one m give that m, whatever its size.
+        /// If the error vanishes for one m, that m is found, whatever its size.
         #[test]
         fn scales_without_error_are_found(dim in 2usize..6, seed in any::<u64>()) {
             let (targets, _) = products(dim, seed);
             let m = DVector::from_fn(dim, |k, _| (1.3 * (seed as f64 * 1e-18 + k as f64).sin()).exp());
-            // The errors' null space is m.
+            // m spans the null space of the errors.
             let along = &m / m.norm();
             let errors = DMatrix::identity(dim, dim) - &along * along.transpose() + 1e-12 * DMatrix::identity(dim, dim);
             let found = least_error(&errors, &targets);

@@ -1,4 +1,4 @@
-//! Step 10: the models of a search on more rows than those that were kept: exactly on some, through inducing rows on all.
+//! Step 10: fits the models of a search to more rows than were kept: exactly to some, through inducing rows to all.
 
 use crate::Rows;
 use crate::kernel::block::Block;
@@ -13,50 +13,51 @@ use crate::slope::data::SlopeData;
 use crate::slope::search::{NEARLY, Outcome, best_of, candidate, nearly_best};
 use crate::slope::slope_gp::SlopeGp;
 
-/// Rows of certain velocities, for each that was kept, up to which the others say nearly the same as those kept.
+/// Up to this many rows of certain velocities per kept row, the other rows add almost nothing.
 const MANY: usize = 4;
-/// Rows of an exact model beside those kept, and how many of both set amplitudes, at least.
+/// Number of rows of an exact model in addition to the kept ones, and minimum number of all these that determine its amplitudes.
 const EXACT: usize = 1500;
 const HYPER: usize = 400;
-/// Left-out error of a model of more noisy rows, in errors of one of fewer, up to which it is taken.
+/// A model of more noisy rows is accepted up to this multiple of the left-out error of a model of fewer.
 const ALLOWED: f64 = 1.05;
-/// Left-out error of a model of some rows through inducing ones, in errors of an exact one, up to which it is taken.
+/// A model of some rows through inducing rows is accepted up to this multiple of the left-out error of an exact model.
 const CLEARLY: f64 = 0.7;
-/// Multiple of the least error so far above which the other kind of model is not tried through inducing rows.
+/// If the error exceeds this multiple of the least so far, the other kind of model is not tried through inducing rows.
 const HOPELESS: f64 = 2.0;
-/// Families of exact models with at most so many times the least 1 − R² are tried through inducing rows.
+/// Families of exact models are tried through inducing rows if their 1 − R² is at most this multiple of the least.
 const ABOUT: f64 = 1.2;
-/// Rows, for each inducing one, on which families are compared where there are several times as many, and beyond which they are thinned.
+/// Rows per inducing row on which families are compared if there are [`SEVERAL`] times as many; above [`MOST`] per inducing row, rows are
+/// thinned.
 const FEW: usize = 16;
 const SEVERAL: usize = 3;
 const MOST: usize = 64;
-/// Inducing rows beyond which rows are not more: time goes with the square of the former.
+/// Above this number of inducing rows, the number of rows does not grow with it, because time grows with its square.
 const INDUCING: usize = 500;
 
-/// More rows, and the outcome on them.
+/// More rows, and the outcome of a search on them.
 pub(crate) struct OnAllRows {
     pub(crate) kept: Kept,
     pub(crate) outcome: Outcome,
 }
 
-/// [`on_all_rows`] of rows of samples.
+/// [`on_all_rows`] for rows of samples.
 pub(crate) fn on_all_samples(gp: &SlopeGp, rows: &Rows, kept: &Kept, thinned: &Outcome) -> Option<OnAllRows> {
     let selection = gp.selection().ok()?;
     let at_most = |most| selection.keep_all(rows, kept, most);
     on_all_rows(gp, More { at_most: &at_most, noisy: rows.variances().is_some() }, kept, thinned)
 }
 
-/// Where more rows than those kept come from.
+/// Source of more rows than those kept.
 pub(crate) struct More<'a> {
-    /// Those kept and about so many of the others; none if there are no others.
+    /// The kept rows and about so many others; `None` if there are no others.
     pub(crate) at_most: &'a dyn Fn(usize) -> Option<Kept>,
     /// Whether their velocities are uncertain.
     pub(crate) noisy: bool,
 }
 
-/// `thinned`, a search on the rows `kept`, on more rows: the best families again, first exactly with amplitudes anew, then those of
-/// them that are still good on rows through inducing ones, and the best of these on all rows. None where not many rows were thinned, where what hides least was
-/// chosen, or where the movements of `kept` are predicted best without these rows.
+/// Extends `thinned`, a search on the rows `kept`, to more rows. The best families are fitted again: first exactly with new amplitudes,
+/// then those that remain good through inducing rows on some rows, and the best of these on all rows. `None` if few rows were thinned, if
+/// step 8 selected the policy that hides least, or if the movements of `kept` are predicted best without these rows.
 pub(crate) fn on_all_rows(
     gp: &SlopeGp,
     More { at_most, noisy }: More<'_>,
@@ -79,16 +80,16 @@ pub(crate) fn on_all_rows(
     let worth = |all: &Kept, data: &SlopeData, of: &Candidate| judge.error(all, data, of) <= HOPELESS * least;
     let before = exact.as_ref().map_or(thinned, |exact| &exact.outcome);
     let (some, all) = if beyond == 0 { (None, None) } else { all_induced(gp, at_most, before, worth) };
-    // Of noisy rows too few are kept to tell nearly equal models apart: the one of more rows knows more.
+    // If rows are noisy, too few are kept to distinguish nearly equal models, so the model of more rows is preferred.
     let allowed = if noisy { ALLOWED } else { 1.0 };
     let all = all.filter(|all| error(all) <= allowed * least);
-    // More rows than an exact model has, but seen through fewer: it knows more only if it predicts clearly better.
+    // This model has more rows than an exact one, but represents them by fewer. It is better only if it predicts clearly better.
     let some = some.filter(|some| error(some) <= CLEARLY * least);
     all.or(some).or_else(|| exact.filter(|exact| error(exact) <= allowed * thinned_error))
 }
 
-/// Models through inducing rows: of some rows where there are several times as many, with the families that were nearly the best before,
-/// and of all with those that are the best then.
+/// Models through inducing rows: of some rows if there are several times as many, with the families that were nearly the best before, and
+/// of all rows with the families that are the best then.
 fn all_induced(
     gp: &SlopeGp,
     at_most: &dyn Fn(usize) -> Option<Kept>,
@@ -105,7 +106,7 @@ fn all_induced(
     (some, all)
 }
 
-/// Compares models on the rows that were kept, which all of them have.
+/// Compares models on the kept rows, which all of them contain.
 struct Judge<'a> {
     /// D of these rows.
     weights: &'a [f64],
@@ -113,7 +114,7 @@ struct Judge<'a> {
 }
 
 impl Judge<'_> {
-    /// Σ w e² in squared units of speed, each movement left out of a model of `all` rows.
+    /// Σ w e² in squared units of speed, where each movement is left out of a model of `all` rows.
     fn error(&self, all: &Kept, data: &SlopeData, of: &Candidate) -> f64 {
         let places = positions(&all.rows, self.rows);
         let each = places.into_iter().zip(self.weights);
@@ -121,8 +122,9 @@ impl Judge<'_> {
     }
 }
 
-/// Models of few enough rows to be exact, with amplitudes of those. Where the model taken before predicts nearly exactly, prediction depends on the
-/// units of z and y: they are those of `thinned` or of these rows, whichever that model predicts better in.
+/// Exact models of a limited number of rows, with amplitudes fitted to these. If the previously selected model predicts nearly exactly,
+/// prediction depends on the units of z and y. The units are then those of `thinned` or of these rows, whichever give that model the lower
+/// error.
 fn exact(gp: &SlopeGp, more: &Kept, thinned: &Outcome, judge: &Judge<'_>) -> Option<OnAllRows> {
     let count = more.rows.len();
     let hyper = scattered(count, count.min(gp.hyper_rows.max(HYPER)), 0.0).collect();
@@ -145,8 +147,8 @@ fn exact(gp: &SlopeGp, more: &Kept, thinned: &Outcome, judge: &Judge<'_>) -> Opt
     compared((kept, data), (thinned, NEARLY), fit, |_, _, _| true)
 }
 
-/// Models of these rows through inducing ones, with the families that were nearly the best before; none if those like the one taken
-/// then are not `worth` more.
+/// Models of these rows through inducing rows, with the families that were nearly the best before; `None` if the best model of the
+/// previously selected kind is not `worth` continuing.
 fn induced(
     gp: &SlopeGp,
     all: Kept,
@@ -159,15 +161,15 @@ fn induced(
     compared((all, data), (before, nearly), fit, worth)
 }
 
-/// Steps 6 and 7 on other rows, with the families that were nearly the best before; none if the best model of the kind taken before is not `worth`
-/// the other kind.
+/// Steps 6 and 7 on other rows, with the families that were nearly the best before; `None` if the best model of the previously selected
+/// kind is not `worth` trying the other kind.
 fn compared(
     (kept, data): (Kept, SlopeData),
     (before, nearly): (&Outcome, f64),
     mut fit: impl FnMut(&SlopeData, &Kept, (Family, ModelKind), &[(Block, f64)]) -> Option<Candidate>,
     worth: impl Fn(&Kept, &SlopeData, &Candidate) -> bool,
 ) -> Option<OnAllRows> {
-    // One after the other: each is parallel in itself, and together they would take several times the memory.
+    // Sequential, because each fit is parallel in itself, and together they would take several times the memory.
     let mut best = |kind| {
         let tried = nearly_best_of(&before.families, kind, nearly)
             .into_iter()
@@ -197,13 +199,13 @@ fn compared(
     Some(OnAllRows { kept, outcome })
 }
 
-/// Families of one kind that predict movements left out nearly as well as the best of them, with their amplitudes.
+/// Families of one kind that predict left-out movements nearly as well as the best of them, with their amplitudes.
 fn nearly_best_of(families: &[FamilyReport], kind: ModelKind, nearly: f64) -> Vec<(Family, &[(Block, f64)])> {
     let nearly = nearly_best(families.iter().filter(|report| report.model == kind), nearly);
     nearly.into_iter().filter_map(|report| Some((report.family, &*report.fit.as_ref()?.amplitudes))).collect()
 }
 
-/// D of other rows as it was of those before; rows of stretches have theirs.
+/// D of other rows, computed as for the previous ones; rows of stretches have their own.
 fn noise_weights(all: &Kept, before: &Outcome) -> Vec<f64> {
     if let Some(of_stretches) = &all.of_stretches {
         return of_stretches.weights.clone();

@@ -1,4 +1,4 @@
-//! One model among those that a search tries.
+//! One of the models that a search tries.
 
 use nalgebra::DMatrix;
 
@@ -14,7 +14,7 @@ use crate::slope::data::SlopeData;
 use crate::slope::expansion::Expansion;
 use crate::slope::model::SlopeModel;
 
-/// A model and how it came about.
+/// A model and its origin.
 #[derive(Debug, Clone)]
 pub(crate) struct Candidate {
     pub(crate) family: Family,
@@ -23,7 +23,7 @@ pub(crate) struct Candidate {
     pub(crate) left_out: LeftOutPredictions,
     /// π̂ at the rows, (n, M).
     pub(crate) actions: DMatrix<f64>,
-    /// σ² by evidence, and what it was raised by.
+    /// σ² by marginal likelihood, and the factor by which it was increased.
     found: f64,
     kappa: f64,
 }
@@ -43,7 +43,7 @@ impl Candidate {
         Candidate { family, kind, model, left_out, actions, found, kappa }
     }
 
-    /// Blocks with these amplitudes on all rows, through at most so many of them; none without factor.
+    /// The model with these amplitudes on all rows, through at most `most` of them; `None` without a Cholesky factor.
     pub(super) fn induced(
         data: &SlopeData,
         all: &Kept,
@@ -57,7 +57,7 @@ impl Candidate {
         Some(Candidate { family, kind, left_out, actions, found: model.noise, model, kappa })
     }
 
-    /// The same model at those higher levels of noise that predict nearly exactly, one after the other.
+    /// The same model at each higher noise level that predicts nearly exactly, in sequence.
     pub(crate) fn raised<'a>(&'a self, data: &'a SlopeData, kept: &'a Kept) -> impl Iterator<Item = Candidate> + 'a {
         let Expansion { blocks, amplitudes, .. } = self.model.expansion();
         let fits = data.raised(blocks, amplitudes, (self.found, self.kappa));

@@ -1,15 +1,16 @@
-//! Whether left-out movements tested a policy across the paths of those learnt from.
+//! Determines whether left-out movements tested a policy across the paths of the learnt ones.
 
 use motion::upper_median;
 
 use crate::rows::thinning::every_so_many;
 use crate::slope::data::SlopeData;
 
-/// Rows whose neighbours are looked at, at most.
+/// Maximum number of rows whose neighbours are examined.
 const ROWS: usize = 200;
-/// Share of what unrelated directions differ by, from which movements pass the same places in others.
+/// Share of the difference between unrelated directions above which movements pass the same places in other directions.
 const OTHERS: f64 = 0.25;
-/// Rows of two movements are at the same place if they are nearer than so many usual distances of successive rows of one.
+/// Rows of two movements are at the same place if their distance is below this multiple of the usual distance of successive rows of one
+/// movement.
 const NEAR: f64 = 2.0;
 
 /// Whether movements passed the same places in other directions.
@@ -17,14 +18,14 @@ const NEAR: f64 = 2.0;
 pub(crate) enum CrossPathEvidence {
     /// Constraints varied: held-out movements test the policy across the paths of the others.
     Tested,
-    /// All movements may have gone alike, so that nothing tested the policy across them.
+    /// All movements may have gone the same way, so that nothing tested the policy across them.
     Untested,
 }
 
 impl CrossPathEvidence {
-    /// By directions alone, where there is no reading: those of the nearest rows of other movements, if these are nearer than twice the
-    /// median distance of successive rows. Over up to 200 rows, of weights 1/D, the mean of 1 − (nᵀn')² (0 without such a neighbour) is at
-    /// least a quarter of 1 − 1/d, which unrelated directions have. Costs 200 M d.
+    /// Decides by directions alone, for a fit without a reading. The nearest row of another movement counts as a neighbour if it is nearer
+    /// than twice the median distance of successive rows. The result is `Tested` if the mean of 1 − (nᵀn')² (0 without a neighbour), over
+    /// up to 200 rows with weights 1/D, is at least a quarter of 1 − 1/d, the value for unrelated directions. Costs 200 M d.
     pub(crate) fn of_neighbours(data: &SlopeData) -> CrossPathEvidence {
         let (dim, count) = data.n.shape();
         let mut group = vec![0; count];
@@ -62,7 +63,7 @@ mod tests {
 
     use super::*;
 
-    /// Straight movements side by side along an axis, of which each sample moves along its own direction.
+    /// Straight movements side by side along an axis; each sample has its own direction of motion.
     fn beside(dim: usize, mut direction: impl FnMut() -> DVector<f64>) -> SlopeData {
         let (movements, samples) = (12, 10);
         let state = |row: usize| {
@@ -81,7 +82,7 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(32))]
 
-        /// Movements that all go alike, but for a tenth of noise, test nothing across; movements in random directions do.
+        /// Movements that all go the same way, up to a tenth of noise, test nothing across; movements in random directions do.
         #[test]
         fn movements_in_other_directions_test_across(dim in 2usize..7, seed in any::<u64>()) {
             let rng = &mut ChaCha8Rng::seed_from_u64(seed);
@@ -93,7 +94,7 @@ mod tests {
         }
     }
 
-    /// Few straight movements to one goal do not pass the same places, although their directions differ.
+    /// A few straight movements to one goal do not pass the same places, although their directions differ.
     #[test]
     fn few_rays_test_nothing_across() {
         for (dim, movements) in [(2, 3), (2, 5), (3, 5), (6, 5), (6, 20)] {
@@ -111,7 +112,7 @@ mod tests {
         }
     }
 
-    /// In one dimension nothing lies across.
+    /// One dimension has no direction across.
     #[test]
     fn one_dimension_has_no_across() {
         let mut sign = 1.0;

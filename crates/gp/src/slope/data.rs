@@ -18,7 +18,7 @@ use crate::{GpError, Rows};
 
 /// The slope GP's training data: (S1), in scaled coordinates and with noise weights.
 ///
-/// To fit a policy use [`SlopeGp`](crate::SlopeGp); with these data the caller sets the amplitudes.
+/// To fit a policy, use [`SlopeGp`](crate::SlopeGp); with this type the caller sets the amplitudes.
 #[derive(Debug, Clone)]
 pub struct SlopeData {
     pub(crate) scaling: Scaling,
@@ -37,7 +37,7 @@ pub struct SlopeData {
     pub(crate) groups: Vec<Vec<usize>>,
 }
 
-/// What (S25) needs, (n, n) each.
+/// The matrices of (S25), (n, n) each.
 #[derive(Debug)]
 pub(crate) struct AxisErrors {
     pub(crate) errors: DMatrix<f64>,
@@ -45,11 +45,11 @@ pub(crate) struct AxisErrors {
 }
 
 impl SlopeData {
-    /// Every row, with noise weights D, (M); rows of a trajectory need not be contiguous.
+    /// Takes every row, with noise weights D, (M); the rows of a trajectory need not be contiguous.
     ///
     /// # Errors
-    /// [`GpError::Lengths`], [`GpError::OneState`], [`GpError::Overflow`], or [`GpError::Value`] for a row that stands
-    /// still or a weight that is not positive.
+    /// [`GpError::Lengths`], [`GpError::OneState`], [`GpError::Overflow`], or [`GpError::Value`] for a row without motion or a
+    /// weight that is not positive.
     pub fn new(rows: &Rows, noise_weights: Vec<f64>) -> Result<Self, GpError> {
         let (found, expected) = (noise_weights.len(), rows.len());
         if found != expected {
@@ -119,34 +119,34 @@ impl SlopeData {
         self.speed
     }
 
-    /// (S8), (S9) on all rows at θ = (log a_1 .. log a_B, log σ²); none if the covariance has no Cholesky factor.
+    /// (S8), (S9) on all rows at θ = (log a_1 .. log a_B, log σ²); `None` if the covariance has no Cholesky factor.
     ///
     /// # Panics
-    /// If there is not one θ a block and one more.
+    /// If `theta` does not have one entry per block and one more.
     pub fn evidence(&self, blocks: &[Block], theta: &[f64]) -> Option<Evidence> {
         let all: Vec<usize> = (0..self.z.ncols()).collect();
         let task = Task::of(&self.covariance(blocks), &all, &self.conditions());
         task.evidence(&DVector::from_column_slice(theta), &mut Workspace::default())
     }
 
-    /// The model at θ with noise raised by κ, and its leave-one-trajectory-out predictions; none if the covariance has no
-    /// Cholesky factor.
+    /// The model at θ with the noise increased by κ, and its leave-one-trajectory-out predictions; `None` if the covariance has
+    /// no Cholesky factor.
     ///
     /// # Panics
-    /// If there is not one θ a block and one more.
+    /// If `theta` does not have one entry per block and one more.
     pub fn condition(&self, blocks: &[Block], theta: &[f64], kappa: f64) -> Option<(SlopeModel, LeftOutPredictions)> {
         let fit = FamilyFit::at(&self.covariance(blocks), theta, kappa, &self.conditions())?;
         let left_out = fit.level.left_out.clone();
         Some((self.model(blocks.to_vec(), fit), left_out))
     }
 
-    /// Amplitudes by marginal likelihood on the hyper rows, noise by held-out prediction: (S8), (S11). Searched a second
-    /// time from other amplitudes, if there are any.
+    /// Determines amplitudes by the marginal likelihood on the hyper rows, noise by held-out prediction: (S8), (S11). Searches a
+    /// second time from the amplitudes `second_start`, if given.
     pub(crate) fn fit(&self, blocks: &[Block], hyper: &[usize], second_start: Option<&[f64]>) -> Option<FamilyFit> {
         fit_family(&self.covariance(blocks), hyper, &self.conditions(), second_start)
     }
 
-    /// The same amplitudes with every level of noise κ > `from`, as far as there is a Cholesky factor.
+    /// The same amplitudes with every noise level κ > `from` that has a Cholesky factor.
     pub(crate) fn raised<'a>(
         &'a self,
         blocks: &'a [Block],
@@ -159,8 +159,8 @@ impl SlopeData {
         kappas().filter(move |&kappa| kappa > from).map_while(level).map(fit)
     }
 
-    /// (S25): products of left-out errors, and of targets, of every pair of axes, for targets n_ij u_ij of one axis j each, with
-    /// whole velocities u, (n, M). None without Cholesky factor.
+    /// (S25): products of left-out errors, and of targets, for every pair of axes. The targets of axis j are n_ij u_ij, with
+    /// whole velocities u, (n, M). `None` without a Cholesky factor.
     pub(crate) fn axis_errors(
         &self,
         velocities: &DMatrix<f64>,
@@ -190,7 +190,8 @@ impl SlopeData {
         SlopeModel::new(expansion, level.noise, whitening)
     }
 
-    /// The model of these amplitudes, conditioned on all rows through at most so many of them; none without factor.
+    /// The model with these amplitudes, conditioned on all rows through at most `most` of them; `None` without a Cholesky
+    /// factor.
     pub(crate) fn induced(
         &self,
         (blocks, amplitudes): (&[Block], &[f64]),

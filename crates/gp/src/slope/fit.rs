@@ -14,7 +14,7 @@ use crate::{GpError, Rows};
 
 /// A fitted slope GP: policy, uncertainty and trust report.
 ///
-/// Stored by serde and read back, it predicts the same to the last bit.
+/// After storing and reading by serde, its predictions are the same to the last bit.
 #[derive(Debug, Clone)]
 pub struct SlopeFit {
     pub(crate) model: SlopeModel,
@@ -22,10 +22,10 @@ pub struct SlopeFit {
 }
 
 impl SlopeGp {
-    /// Learns from rows. The generator draws one permutation and, where rows are thinned, an offset.
+    /// Learns from rows. The generator draws one permutation and, if rows are thinned, an offset.
     ///
     /// # Errors
-    /// [`GpError::Parameter`], or why the rows are refused: too few, no motion, one state, no Cholesky factor.
+    /// [`GpError::Parameter`], or the reason for refusing the rows: too few, no motion, one state, no Cholesky factor.
     pub fn fit<R: Rng + ?Sized>(&self, rows: &Rows, rng: &mut R) -> Result<SlopeFit, GpError> {
         let kept = self.selection()?.keep(rows, rng)?;
         let plain = outcome(self, &kept)?;
@@ -53,19 +53,19 @@ impl SlopeFit {
         self.model.policy()
     }
 
-    /// φ̂; none if the model allows for rotation.
+    /// φ̂; `None` if the model allows rotation.
     pub fn potential(&self) -> Option<&SlopePotential> {
         self.model.potential()
     }
 
-    /// (S13): cov π(x), (n, n), in squared units of the state per second, not yet times
-    /// [`TrustReport::variance_factor`]. Costs n M².
+    /// (S13): cov π(x), (n, n), in squared units of the state per second, not yet multiplied by [`TrustReport::variance_factor`]. Costs n
+    /// M².
     pub fn uncertainty(&self, state: DVectorView<'_, f64>) -> DMatrix<f64> {
         self.model.covariance(state)
     }
 
-    /// φ̂(x) − φ̂(x₀), from x₀ = `from` to x, (n + p) each, in squared units of the state per second, and its variance (S14), not yet times
-    /// [`TrustReport::variance_factor`]; none if there is no potential.
+    /// φ̂(x) − φ̂(x₀), from x₀ = `from` to x, (n + p) each, in squared units of the state per second, and its variance (S14), not yet
+    /// multiplied by [`TrustReport::variance_factor`]; `None` without a potential.
     pub fn potential_difference(&self, x: DVectorView<'_, f64>, from: DVectorView<'_, f64>) -> Option<(f64, f64)> {
         self.model.potential_difference(x, from)
     }

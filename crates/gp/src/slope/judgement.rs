@@ -1,4 +1,4 @@
-//! The trust report of a slope GP, with the error to expect on new movements (R6), (S19).
+//! The trust report of a slope GP, with the expected error on new movements (R6), (S19).
 
 use nalgebra::{DMatrix, DVectorView};
 use rayon::prelude::*;
@@ -18,21 +18,21 @@ use crate::slope::cross_path::CrossPathEvidence;
 use crate::slope::data::SlopeData;
 use crate::slope::search::Outcome;
 
-/// As large an error as that of the mean alone: a posterior that is wider says no more.
+/// The error of predicting the mean alone; a wider posterior adds no information.
 pub(crate) const NOTHING_KNOWN: f64 = 1.0;
 
-/// States at which uncertainty is averaged, at most.
+/// Maximum number of states over which uncertainty is averaged.
 const STATES: usize = 200;
-/// States whose triangular systems are solved together.
+/// Number of states whose triangular systems are solved together.
 const TOGETHER: usize = 10;
-/// The other model counts if it predicts at most so much worse.
+/// The other model counts if its 1 − R² is at most this many times as large.
 const NEARLY_AS_GOOD: f64 = 1.5;
 /// Share of the motion along the least observed direction, times n, below which nothing tested the policy along it.
 const SEEN: f64 = 0.1;
-/// Probability from which a switch is counted.
+/// Probability above which a switch is counted.
 const SWITCHED: f64 = 0.5;
 
-/// Input of a report.
+/// Inputs of a report.
 pub(crate) struct ReportInput<'a> {
     pub(crate) outcome: &'a Outcome,
     pub(crate) kept: &'a Kept,
@@ -53,7 +53,7 @@ pub(crate) fn report(chosen: &ReportInput<'_>) -> TrustReport {
     let calibration = calibration((standardised(data, taken), common), noise_share(data, taken), across);
     let variance = spread(&taken.actions) / kept.speeds.len() as f64;
     let error = calibration * traces.max(on_new_movements(data, taken, &noise)) / variance;
-    // Before its first sample every movement begins.
+    // Skips the first sample, at which every movement begins.
     let after_first = |switches: &Vec<f64>| switches.iter().skip(1).filter(|&&p| p > SWITCHED).count();
     let count = |switches: &[Vec<f64>]| switches.iter().map(after_first).sum();
     TrustReport {
@@ -80,22 +80,22 @@ pub(crate) fn report(chosen: &ReportInput<'_>) -> TrustReport {
     }
 }
 
-/// Trace of the policy's covariance on movements that were not shown, as far as those left out say along their motion, in
-/// squared units of the state per second (S19).
+/// Trace of the policy's covariance on new movements, as estimated from left-out ones along their motion, in squared units of the state per
+/// second (S19).
 fn on_new_movements(data: &SlopeData, taken: &Candidate, noise: &[f64]) -> f64 {
     let along = |row: usize| (taken.left_out.variances[row] - noise[row]).max(0.0);
     let rows = 0..noise.len();
     data.n.nrows() as f64 * data.speed.powi(2) * of_movements(rows.map(|row| (row, along(row))), data)
 }
 
-/// z² (S11) to expect on new movements (S43).
+/// Expected z² (S11) on new movements (S43).
 fn standardised(data: &SlopeData, taken: &Candidate) -> f64 {
     let LeftOutPredictions { residuals, variances, .. } = &taken.left_out;
     let each = residuals.iter().zip(variances).map(|(residual, variance)| residual * residual / variance);
     of_movements(each.enumerate(), data)
 }
 
-/// (S43) of the means of movements, of numbers at some rows.
+/// (S43) for the movements' means of numbers at some rows.
 fn of_movements(numbers: impl Iterator<Item = (usize, f64)>, data: &SlopeData) -> f64 {
     let mut of_row = vec![None; data.n.ncols()];
     numbers.for_each(|(row, number)| of_row[row] = Some(number));
@@ -108,21 +108,21 @@ fn of_movements(numbers: impl Iterator<Item = (usize, f64)>, data: &SlopeData) -
     typical_mean(&means, &counts)
 }
 
-/// Variance of each row's noise as the model has it, floor included, (M), scaled.
+/// Noise variance of each row in the model, including the floor, (M), scaled.
 fn noise(data: &SlopeData, taken: &Candidate) -> Vec<f64> {
     data.noise_weights.iter().map(|weight| (taken.model.noise + NOISE_FLOOR) * weight).collect()
 }
 
-/// Share of noise in the variance predicted of left-out movements, by the weights of (S11).
+/// Share of noise in the predictive variance of left-out movements, with the weights of (S11).
 fn noise_share(data: &SlopeData, taken: &Candidate) -> f64 {
     let each = taken.left_out.variances.iter().zip(&data.noise_weights);
     let predicted: f64 = each.map(|(variance, weight)| variance / weight).sum();
     taken.model.noise * data.noise_weights.len() as f64 / predicted
 }
 
-/// γ of (S19): factor on the posterior's variance, from how left-out movements were predicted: by z² (S11), and by what neighbouring errors
-/// have in `common` (S42). Less than 1 tells something of the posterior only as far as noise is a small part of the variance predicted,
-/// and of all directions only where movements left out went in others than those learnt from.
+/// γ of (S19): factor on the posterior variance, determined by the errors on left-out movements: z² (S11), and `common`, the part that
+/// neighbouring errors share (S42). A value below 1 is informative about the posterior only if noise is a small part of the predictive
+/// variance, and about all directions only if left-out movements went in other directions than the learnt ones.
 fn calibration((z_squared, common): (f64, f64), noise_share: f64, across: CrossPathEvidence) -> f64 {
     let least = match across {
         CrossPathEvidence::Tested => noise_share.min(1.0),
@@ -143,9 +143,9 @@ fn ambiguity(taken: &Candidate, other: &Candidate) -> f64 {
 
 /// (S13) at some rows.
 struct CovariancesAtRows {
-    /// Trace to expect on movements like theirs (S43).
+    /// Expected trace on movements like those of the rows (S43).
     traces: f64,
-    /// Mean, (n, n), and the mean of what it was before anything was observed.
+    /// Mean posterior covariance, (n, n), and mean prior covariance.
     posterior: DMatrix<f64>,
     prior: DMatrix<f64>,
 }
@@ -190,8 +190,8 @@ mod tests {
     use super::*;
 
     proptest! {
-        /// Errors larger than predicted always widen; smaller ones narrow only what they have tested, and never below what
-        /// either measure of them says or the share of noise.
+        /// Errors larger than predicted always widen the posterior. Smaller errors narrow it only in tested directions, and never below
+        /// either measure or the share of noise.
         #[test]
         fn a_posterior_is_narrowed_only_by_what_tested_it(z_squared in 0.0f64..9.0, common in 0.0f64..9.0, noise in 0.0f64..1.0) {
             let tested = calibration((z_squared, common), noise, CrossPathEvidence::Tested);

@@ -1,4 +1,4 @@
-//! The slope GP behind the traits of all learners.
+//! The slope GP as an implementation of the learners' common traits.
 
 use motion::{Certainty, Demonstrations, LearnError, Learner, LearntPolicy, Policy, Potential, SampleIndex};
 use nalgebra::{DMatrix, DMatrixView, DVectorView, DVectorViewMut};
@@ -11,12 +11,12 @@ use crate::slope::fit::SlopeFit;
 use crate::slope::slope_gp::SlopeGp;
 use crate::support::only_deviation_into;
 
-/// The slope GP as a learner, with the front end that makes its rows.
+/// The slope GP as a learner, with the front end that produces its rows.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct SlopeLearner {
-    /// How recordings become rows.
+    /// The front end, which turns recordings into rows.
     pub front_end: FrontEnd,
-    /// The Gaussian process fitted to them.
+    /// The Gaussian process that is fitted to the rows.
     pub gp: SlopeGp,
 }
 

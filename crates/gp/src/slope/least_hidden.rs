@@ -1,18 +1,18 @@
-//! Selects a policy where held-out movements cannot tell policies apart.
+//! Selects a policy if held-out movements cannot distinguish policies.
 
 use crate::left_out::comparison::{DIFFERS, difference};
 use crate::rows::kept::Kept;
 use crate::slope::candidate::Candidate;
 use crate::slope::data::SlopeData;
 
-/// Step 8: of all levels of noise of the model with rotation that predict left-out movements, the policy that hides least,
-/// Σ|π̂|² at the rows. None where prediction decides: that model leaves more than a thousandth unpredicted; or it gives the
-/// same policy as a potential that predicts as well; or what hides least differs little from what is there.
+/// Step 8: among all noise levels of the model with rotation that predict left-out movements, selects the policy that hides
+/// least, by Σ|π̂|² at the rows. `None` if prediction decides: that model leaves more than a thousandth unpredicted, it gives
+/// the same policy as a potential that predicts as well, or the policy that hides least differs little from the present one.
 ///
-/// Movements in a corridor all go the same way. Every model then predicts them to 1e-5, whatever it says of the directions
-/// across, which nothing has tested: there the models differ by as much as the policy itself, and an error of 1e-6 instead of
-/// 1e-5 is no reason to believe one of them. What was never seen is what a constraint hid, or nothing at all: the policy
-/// that hides least makes up least.
+/// Movements in a corridor all go the same way. Every model then predicts them to 1e-5, whatever it assumes for the
+/// directions across, which nothing has tested. There the models differ by as much as the policy itself, and an error of 1e-6
+/// instead of 1e-5 is no reason to prefer one of them. An unobserved component was hidden by a constraint, or does not exist;
+/// the policy that hides least assumes the least.
 pub(crate) fn least_hidden(
     data: &SlopeData,
     kept: &Kept,

@@ -34,7 +34,7 @@ impl SlopeModel {
         &self.policy
     }
 
-    /// φ̂; none if the model allows for rotation.
+    /// φ̂; `None` if the model allows rotation.
     pub fn potential(&self) -> Option<&SlopePotential> {
         self.potential.as_ref()
     }
@@ -44,7 +44,7 @@ impl SlopeModel {
         &self.expansion().weights
     }
 
-    /// Number of inducing rows; none where every row is in the model.
+    /// Number of inducing rows; `None` if the model contains every row.
     pub(crate) fn inducing(&self) -> Option<usize> {
         matches!(self.whitening, Whitening::Inducing { .. }).then_some(self.weights().len())
     }
@@ -69,7 +69,7 @@ impl SlopeModel {
         (x * x.transpose() * beside + isotropic) * expansion.speed.powi(2)
     }
 
-    /// (S13) at several states: one solution of triangular systems for all. A state alone gets the same bits as among others.
+    /// (S13) at several states, with one solution of triangular systems for all. A single state gets the same bits as among others.
     pub(crate) fn covariances(&self, states: &[DVectorView<'_, f64>]) -> Vec<DMatrix<f64>> {
         let (dim, speed) = (self.expansion().moving(), self.expansion().speed);
         let whitened = self.whitened(states);
@@ -77,22 +77,23 @@ impl SlopeModel {
         let posterior = |(at, state): (usize, &DVectorView<'_, f64>)| {
             let known = whitened.columns(at * dim, dim);
             let mut explained = known.tr_mul(&known);
-            // The bits of `variances`.
+            // Uses the same bits as `variances`.
             explained.set_diagonal(&DVectorView::from_slice(&norms[at * dim..], dim));
             self.prior_covariance(*state) - explained * speed.powi(2)
         };
         states.iter().enumerate().map(posterior).collect()
     }
 
-    /// C_x of (S13) at several states, what the rows explain of it: n columns a state.
+    /// C_x of (S13) at several states, whitened, as the part that the rows explain: n columns per state.
     fn whitened(&self, states: &[DVectorView<'_, f64>]) -> Panel {
         let mut panel = self.expansion().policy_with_rows_at(states);
         self.whiten(&mut panel);
         panel
     }
 
-    /// Posterior and prior variances of every component at states with their contexts (n + p, N), both (n, N), in squared units of the
-    /// state per second, in parallel: the diagonal of (S13). A state alone gets the same bits as among others. Costs n M² a state.
+    /// Posterior and prior variances of each component at states with their contexts (n + p, N), both (n, N), in squared units of the
+    /// state per second, computed in parallel: the diagonal of (S13). A single state gets the same bits as among others. Costs n M²
+    /// per state.
     pub(crate) fn variances(&self, states: DMatrixView<'_, f64>) -> Variances {
         let (dim, speed) = (self.expansion().moving(), self.expansion().speed);
         Variances::of(states, dim, |states, prior, posterior| {
@@ -106,7 +107,7 @@ impl SlopeModel {
         })
     }
 
-    /// Prior variance of every component at a state with its context, (n), in squared units of the state per second.
+    /// Prior variance of each component at a state with its context, (n), in squared units of the state per second.
     fn prior_variances(&self, state: DVectorView<'_, f64>, variances: &mut [f64]) {
         let speed = self.expansion().speed;
         self.expansion().scaling.with_coordinates(state.as_slice(), |z| {
@@ -117,7 +118,8 @@ impl SlopeModel {
         });
     }
 
-    /// Whether the support of states with their contexts (n + p, N) is at least `least`, as their [`variances`](Self::variances) say.
+    /// Whether the support of states with their contexts (n + p, N) is at least `least`, according to their
+    /// [`variances`](Self::variances).
     pub(crate) fn supported(&self, states: DMatrixView<'_, f64>, least: f64) -> Vec<bool> {
         let (dim, speed) = (self.expansion().moving(), self.expansion().speed);
         let Expansion { blocks, z, n, amplitudes, scaling, weights, .. } = self.expansion();
@@ -143,8 +145,7 @@ impl SlopeModel {
         supported(states, dim, least, some, |states| self.variances(states))
     }
 
-    /// φ̂(x) − φ̂(x₀) and its variance (S14), in units of the state squared per second, and their square; none if there
-    /// is no potential.
+    /// φ̂(x) − φ̂(x₀) and its variance (S14), in units of the state squared per second, and their square; `None` without a potential.
     pub fn potential_difference(&self, x: DVectorView<'_, f64>, from: DVectorView<'_, f64>) -> Option<(f64, f64)> {
         let (expansion, _) = (self.expansion(), self.potential.as_ref()?);
         let value = expansion.potential(x.as_slice()) - expansion.potential(from.as_slice());
@@ -162,7 +163,7 @@ impl SlopeModel {
         Some((value, (expansion.speed * expansion.scaling.scale).powi(2) * scaled))
     }
 
-    /// π̂ at each of the states with their contexts (n + p, M), (n, M).
+    /// π̂ at states with their contexts (n + p, M), (n, M).
     pub(crate) fn actions(&self, states: &DMatrix<f64>) -> DMatrix<f64> {
         self.expansion().actions(states.as_view())
     }

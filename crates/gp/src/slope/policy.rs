@@ -6,13 +6,13 @@ use nalgebra::{DMatrix, DMatrixView, DVectorView, DVectorViewMut};
 use crate::dimension::require;
 use crate::slope::expansion::Expansion;
 
-/// π̂ of (S7), of a state followed by its context, along which it is 0. Cheap to clone.
+/// π̂ of (S7), a function of a state followed by its context, along which it is 0. Cheap to clone.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SlopePolicy {
     pub(crate) expansion: Arc<Expansion>,
 }
 
-/// φ̂ of (S7), whose negative gradient is π̂. Only differences of it within one context have a meaning, and along the context its
+/// φ̂ of (S7), whose negative gradient is π̂. Only its differences within one context are meaningful; along the context its
 /// gradient counts as 0. Cheap to clone.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SlopePotential {

@@ -7,8 +7,8 @@ pub enum PushTest {
     /// b = 0, as in the paper: one search, on rows of samples.
     #[default]
     AssumeNone,
-    /// A second search on rows of stretches (S22) where something pushes (S24). The better one in predicting left-out
-    /// movements is kept.
+    /// If a push is detected (S24), also searches on rows of stretches (S22). The search that predicts left-out
+    /// movements better is kept.
     Fit,
 }
 

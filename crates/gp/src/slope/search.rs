@@ -1,4 +1,4 @@
-//! Families and rotation tried one after the other: steps 3 to 9 of a fit.
+//! Tries families and rotation in sequence: steps 3 to 9 of a fit.
 
 use rayon::prelude::*;
 
@@ -15,25 +15,25 @@ use crate::slope::data::SlopeData;
 use crate::slope::least_hidden::least_hidden;
 use crate::slope::slope_gp::SlopeGp;
 
-/// First guess of the policy's length, in root mean squares of the speeds seen.
+/// First guess of the policy's length, in root mean squares of the observed speeds.
 const HIDDEN: f64 = 1.3;
-/// How often noise weights are taken anew from a policy with rotation.
+/// Number of times that noise weights are computed again from a policy with rotation.
 const ROUNDS: usize = 3;
-/// Models with at most so many times the least error on some rows may have less on more.
+/// Models whose error on some rows is at most this multiple of the least may be the best on more rows.
 pub(super) const NEARLY: f64 = 4.0;
 
-/// The model taken, the one not taken, and everything tried.
+/// The selected model, the other one, and all fits.
 pub(crate) struct Outcome {
     pub(crate) data: SlopeData,
     pub(crate) taken: Candidate,
     pub(crate) other: Option<Candidate>,
     pub(crate) curl_t: Option<f64>,
     pub(crate) families: Vec<FamilyReport>,
-    /// Whether the model taken is that of step 8.
+    /// Whether step 8 selected the model.
     pub(crate) least_hidden: bool,
 }
 
-/// The search: steps 3 to 8, and step 9, which weighs certain velocities where they are not predicted nearly exactly.
+/// The search: steps 3 to 8, and step 9, which weights certain velocities if they are not predicted nearly exactly.
 pub(crate) fn outcome(gp: &SlopeGp, kept: &Kept) -> Result<Outcome, GpError> {
     let alike = searched(gp, kept, weighted(gp, kept)?)?;
     if kept.variances.is_some() || kept.of_stretches.is_some() || alike.taken.left_out.is_nearly_exact() {
@@ -57,7 +57,7 @@ fn searched(gp: &SlopeGp, kept: &Kept, data: SlopeData) -> Result<Outcome, GpErr
     compared(gp, kept, data, (Some(potential), rotation), families)
 }
 
-/// Steps 7 and 8 of the best models with a potential, if there is one, and with rotation.
+/// Steps 7 and 8 for the best models with a potential, if any, and with rotation.
 fn compared(
     gp: &SlopeGp,
     kept: &Kept,
@@ -84,7 +84,7 @@ fn compared(
     Ok(Outcome { data, taken, other, curl_t: t, families, least_hidden })
 }
 
-/// The search on more rows of stretches than `fewer`, of the models alone that nearly were the best ones there.
+/// The search on more rows of stretches than `fewer`, restricted to the models that were nearly the best there.
 pub(crate) fn outcome_of_nearly_best(gp: &SlopeGp, kept: &Kept, fewer: &Outcome) -> Result<Outcome, GpError> {
     let data = weighted(gp, kept)?;
     let nearly_best = nearly_best(fewer.families.iter(), NEARLY);
@@ -103,7 +103,7 @@ pub(crate) fn outcome_of_nearly_best(gp: &SlopeGp, kept: &Kept, fewer: &Outcome)
     }
 }
 
-/// Of models of the same rows those that leave at most `nearly` times as much of the movements left out as the best of them.
+/// The models of the same rows whose error on left-out movements is at most `nearly` times that of the best.
 pub(super) fn nearly_best<'a>(
     reports: impl Iterator<Item = &'a FamilyReport> + Clone,
     nearly: f64,
@@ -113,8 +113,8 @@ pub(super) fn nearly_best<'a>(
     reports.filter(|report| report.fit.is_some() && left(report) <= nearly * least).collect()
 }
 
-/// Step 9: the search again with the weights (S18) of a pilot policy, which was itself fitted with those of the model taken;
-/// none if that does not predict better, or if already the pilot predicts rather worse.
+/// Step 9: repeats the search with the weights (S18) of a pilot policy, which is itself fitted with the weights from the
+/// selected model; `None` if that does not predict better, or if the pilot already predicts clearly worse.
 fn weighed(gp: &SlopeGp, kept: &Kept, alike: &Outcome) -> Result<Option<Outcome>, GpError> {
     let weighed_by = |lengths: &[f64]| SlopeData::from_kept(kept, certain_weights(&kept.speeds, lengths));
     let data = weighed_by(&alike.taken.lengths())?;
@@ -126,7 +126,7 @@ fn weighed(gp: &SlopeGp, kept: &Kept, alike: &Outcome) -> Result<Option<Outcome>
     Ok(weights_pay(gain_t(kept, alike, (&weighed.data, &weighed.taken))).then_some(weighed))
 }
 
-/// t of (S18): how surely a model with weights predicts movements left out better.
+/// t of (S18): the certainty that a model with weights predicts left-out movements better.
 fn gain_t(kept: &Kept, alike: &Outcome, (data, weighed): (&SlopeData, &Candidate)) -> f64 {
     let errors = |data: &SlopeData, candidate: &Candidate| -> Vec<f64> {
         candidate.left_out.residuals.iter().map(|residual| data.speed * residual).collect()
@@ -152,7 +152,7 @@ fn weighted(gp: &SlopeGp, kept: &Kept) -> Result<SlopeData, GpError> {
     }
 }
 
-/// Step 5 for one family; none if its covariance has no Cholesky factor.
+/// Step 5 for one family; `None` if its covariance has no Cholesky factor.
 pub(super) fn candidate(
     gp: &SlopeGp,
     data: &SlopeData,
@@ -168,7 +168,7 @@ pub(super) fn candidate(
     Some(Candidate::new(data, kept, (family, kind), blocks, fit))
 }
 
-/// Step 6: the highest R², ties to the first; notes all of them.
+/// Step 6: the highest R², ties to the first; records all results.
 pub(super) fn best_of(
     tried: impl Iterator<Item = (Family, Option<Candidate>)>,
     model: ModelKind,
@@ -185,8 +185,8 @@ pub(super) fn best_of(
     best
 }
 
-/// Step 7: the best family with rotation, and `smooth` unless that predicts nearly exactly. The best family of
-/// potentials that do not predict says nothing: then `smooth` is tried, too.
+/// Step 7: the best family with rotation, and `smooth` unless both predict nearly exactly. If no potential predicts well,
+/// the best family of potentials is uninformative, so `smooth` is tried as well.
 fn rotation(
     gp: &SlopeGp,
     data: &SlopeData,
@@ -208,7 +208,7 @@ fn rotation(
     best_of(tried.into_iter(), ModelKind::Helmholtz, families)
 }
 
-/// Step 4 again with the policy that has rotation, as often as is worth it, fitting anew each time.
+/// Repeats step 4 with the policy with rotation, as often as useful, and fits again each time.
 fn reweighted(
     gp: &SlopeGp,
     kept: &Kept,

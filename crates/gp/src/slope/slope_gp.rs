@@ -8,34 +8,33 @@ use crate::slope::push_test::PushTest;
 
 /// A Gaussian process on a potential, observed only through slopes along the motion (S1).
 ///
-/// Under a constraint u = Nπ with N the orthogonal projection onto the null space, uᵀπ = uᵀu whichever N it is: every
-/// sample is one linear equation in π. The same holds for orthogonal projections onto convex cones (Moreau), but not for
-/// oblique projections. Where constraints push (A u = b) and stay constant for a while, rows of stretches (S22) take the
-/// place of samples. Nothing is aligned or discarded.
+/// Under a constraint, u = Nπ with N the orthogonal projection onto the null space. Then uᵀπ = uᵀu for every N, and each sample is one
+/// linear equation in π. The same holds for orthogonal projections onto convex cones (Moreau), but not for oblique projections. If
+/// constraints push (A u = b) and stay constant for a while, rows of stretches (S22) replace samples. No sample is aligned or discarded.
 ///
 /// The method combines derivative observations in Gaussian processes (Solak, Murray-Smith, Leithead, Leith, Rasmussen
 /// 2003; Rasmussen & Williams 2006, 9.4) with the inconsistency loss of Howard, Klanke, Gienger, Goerick, Vijayakumar 2009.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SlopeGp {
-    /// Families tried; the one that predicts held-out trajectories best is kept, ties to the first. If the first predicts
-    /// all but 1e-8 of the variance, the others are skipped.
+    /// Families to try. The one that best predicts held-out trajectories is kept; ties go to the first. If the first predicts all but
+    /// 1e-8 of the variance, the others are skipped.
     pub families: Vec<Family>,
     /// Whether families have a trend.
     pub trend: Trend,
-    /// Largest number of rows; more are thinned evenly in time. Time grows with its cube, memory with its square; at
-    /// most [`MOST_ROWS`](crate::MOST_ROWS).
+    /// Maximum number of rows; more are thinned evenly in time. Time grows with its cube, memory with its square. At most
+    /// [`MOST_ROWS`](crate::MOST_ROWS).
     pub max_rows: usize,
-    /// Number of inducing rows, which represent all, where rows are thinned (S34): the model found on `max_rows` is fitted again to 1,500
-    /// rows, and conditioned on all rows through these; whichever predicts held-out movements best is taken. Time grows
-    /// with its square times the number of rows. 0: thinned rows alone.
+    /// Number of inducing rows, which represent all rows if rows are thinned (S34). The model found on `max_rows` is fitted again to
+    /// 1,500 rows, and conditioned on all rows through these; the one that best predicts held-out movements is selected. Time grows with
+    /// its square times the number of rows. 0: thinned rows alone.
     #[serde(default)]
     pub inducing_rows: usize,
     /// Number of random rows whose marginal likelihood sets the amplitudes.
     pub hyper_rows: usize,
-    /// Rows of uncertain velocity are used if |u|² exceeds this squared times the variance of u.
+    /// A row of uncertain velocity is used if |u|² exceeds this squared times the variance of u.
     pub least_snr: f64,
-    /// Rows are used if |u| exceeds this share of the largest.
+    /// A row is used if |u| exceeds this share of the largest.
     pub least_speed: f64,
     /// Whether a rotational component is tested.
     pub curl_test: CurlTest,

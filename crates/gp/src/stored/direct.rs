@@ -9,7 +9,7 @@ use crate::direct::model::DirectModel;
 use crate::kernel::direct_block::DirectBlock;
 use crate::kernel::family::Family;
 
-/// A [`DirectFit`].
+/// Record of a [`DirectFit`].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct DirectRecord {

@@ -1,5 +1,5 @@
-//! Stored fits: the parameters of their policies, to the last bit. The Cholesky factor, which only the uncertainty
-//! needs, is computed when that is first asked for.
+//! Stored fits: the parameters of their policies, to the last bit. The Cholesky factor, which only the uncertainty needs, is computed
+//! on first use.
 
 mod direct;
 mod slope;
@@ -14,14 +14,14 @@ use crate::kernel::whitening::Whitening;
 use crate::rows::MOST_ROWS;
 use crate::rows::scaling::Scaling;
 
-/// The forms below: models of rows, and models of inducing rows.
+/// Versions of the record: models of rows, and models of inducing rows.
 const ROWS: u32 = 1;
 const INDUCING: u32 = 2;
 
-/// Largest dimension of a state: a policy has matrices of its square.
+/// Maximum dimension of a state, because a policy has matrices of its square.
 const MOST_DIMENSIONS: usize = 2_000;
 
-/// Numbers that both kinds of model have; matrices column after column.
+/// Numbers common to both kinds of model; matrices are stored column by column.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Stored<B> {
@@ -34,9 +34,9 @@ struct Stored<B> {
     noise: f64,
     /// z, (n + p, M): states with their contexts.
     states: Vec<f64>,
-    /// D, (M); none of inducing rows.
+    /// D, (M); empty for inducing rows.
     noise_weights: Vec<f64>,
-    /// Of (S37), column by column down to the diagonal; none where all rows are in the model.
+    /// The triangle of (S37), column by column down to the diagonal; empty if all rows are in the model.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     shrinkage: Vec<f64>,
     /// (M) for slopes, (n, M) for velocities.
@@ -44,7 +44,8 @@ struct Stored<B> {
 }
 
 impl<B> Stored<B> {
-    /// The number of rows M, and the dimension n of what moves, which `vectors` has numbers of, (n, M); the rest of `dim` is context.
+    /// Checks the record. Returns the number of rows M and the dimension n of the state, to which `vectors` belong, (n, M); the rest
+    /// of `dim` is context.
     fn check(&self, vectors: &[f64], weights_a_row: impl FnOnce(usize) -> usize) -> Result<(usize, usize), GpError> {
         let inducing = self.version == INDUCING;
         let of_states = self.states.len().checked_div(self.dim).unwrap_or(0);
@@ -91,7 +92,7 @@ fn of_whitening(whitening: &Whitening) -> (u32, Vec<f64>, Vec<f64>) {
     }
 }
 
-/// From what [`Stored::check`] found to fit.
+/// Creates the whitening from the values that [`Stored::check`] accepted.
 fn whitening(rows: usize, noise_weights: Vec<f64>, shrinkage: &[f64]) -> Whitening {
     let factor = LazyFactor::default();
     if shrinkage.is_empty() {

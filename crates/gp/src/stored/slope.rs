@@ -10,7 +10,7 @@ use crate::slope::expansion::Expansion;
 use crate::slope::fit::SlopeFit;
 use crate::slope::model::SlopeModel;
 
-/// A [`SlopeFit`].
+/// Record of a [`SlopeFit`].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct SlopeRecord {

@@ -1,4 +1,4 @@
-//! Where movements are cut, and whether constraints switch within movements.
+//! Cuts movements into segments, and decides whether constraints switch within movements.
 
 use rayon::prelude::*;
 
@@ -8,24 +8,24 @@ use crate::stretches::view::View;
 use crate::stretches::whole::jumps;
 use crate::stretches::{Switches, evenly};
 
-/// Most samples of a movement among which switches are looked for; of longer ones, evenly many.
+/// Maximum number of samples of a movement that are searched for switches; longer movements are sampled evenly.
 pub(crate) const MOST_SAMPLES: usize = 60;
-/// The same, among which jumps are looked for.
+/// The same for jumps.
 const MOST_FOR_JUMPS: usize = 1000;
-/// Share of the movements whose velocities jump above which constraints switch within movements.
+/// Constraints switch within movements if the velocities of more than this share of the movements jump.
 const SWITCHING: f64 = 0.1;
 
 /// The segments of one movement.
 pub(super) struct Cut {
-    /// The rows among which its segments are.
+    /// The rows that were searched for segments.
     pub(super) few: Vec<usize>,
     pub(super) found: Vec<Segment>,
-    /// Whether there are several, and velocities jump.
+    /// Whether there are several segments, and velocities jump.
     jumps: bool,
 }
 
 impl Cut {
-    /// Of each part of the movements. `noise` is the variance of a velocity along an axis.
+    /// The segments of each part of the movements. `noise` is the variance of a velocity along an axis.
     pub(super) fn each(
         rows: &Rows,
         view: &View<'_>,
@@ -47,8 +47,8 @@ impl Cut {
         parts.par_iter().map(of).collect()
     }
 
-    /// Whether constraints switch within so many movements that several segments of one are several stretches. Otherwise they are one that
-    /// comes to rest.
+    /// Whether constraints switch within so many movements that several segments of one movement are separate stretches. Otherwise they
+    /// are one stretch that comes to rest.
     pub(super) fn switches(cuts: &[Cut]) -> bool {
         cuts.iter().filter(|cut| cut.jumps).count() as f64 > SWITCHING * cuts.len() as f64
     }

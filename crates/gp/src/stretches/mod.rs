@@ -1,8 +1,8 @@
 //! Stretches of a movement along which one constraint A u = b acted: (S20) to (S23).
 //!
-//! While A and b stay constant, u = Nπ + A⁺b. The second part, the push, cancels in differences of velocities, which lie in
-//! the null space of A. Every direction v in which they lie gives a linear equation vᵀπ(x_i) = vᵀu_i for all samples of the
-//! stretch: rows like those of (S1), but free of the push.
+//! While A and b stay constant, u = Nπ + A⁺b. The second term, the push, cancels in differences of velocities, which lie in the null
+//! space of A. Every direction v in their span gives a linear equation vᵀπ(x_i) = vᵀu_i for all samples of the stretch: rows like those
+//! of (S1), but independent of the push.
 
 pub(crate) mod cut;
 pub(crate) mod noise;
@@ -25,40 +25,40 @@ use segmentation::Segment;
 use view::{Through, View};
 use whole::{least_length, whole};
 
-/// Most dimensions; the search takes time with the cube of them.
+/// Maximum dimension; the time of the search grows with its cube.
 pub(crate) const MOST_DIMENSIONS: usize = 12;
-/// Standard deviations of the noise that a direction must stand out by, for a stretch of one sample.
+/// Minimum singular value of a direction, in standard deviations of the noise, for a stretch of one sample.
 const STANDS_OUT: f64 = 8.0;
 
-/// Samples of one movement during which A and b did not change, and what their velocities show of A and b.
+/// Samples of one movement during which A and b did not change, and the information about A and b in their velocities.
 #[derive(Debug, Clone)]
 pub(crate) struct Stretch {
     pub(crate) trajectory: usize,
     /// First and last sample.
     pub(crate) samples: (usize, usize),
-    /// Orthonormal directions in the null space of A, (n, m) with m < n; in a task space perhaps none.
+    /// Orthonormal directions in the null space of A, (n, m) with m < n; in a task space possibly none.
     pub(crate) directions: DMatrix<f64>,
-    /// ℓ_k of (S23), (m): the noise over the standard deviation of each direction's angle.
+    /// ℓ_k of (S23), (m): the noise divided by the standard deviation of each direction's angle.
     pub(crate) lengths: Vec<f64>,
-    /// The push A⁺b: the mean velocity along the normals of the plane that the velocities lie in, (n); in a task space that at the middle
-    /// of the stretch.
+    /// The push A⁺b: the mean velocity along the normals of the plane that contains the velocities, (n); in a task space, the push at the
+    /// middle of the stretch.
     pub(crate) push: DVector<f64>,
-    /// Its square in units of the variance that noise gives it, and how many normals there are.
+    /// Squared push in units of its variance under noise, and the number of normals.
     pub(crate) significance: (f64, usize),
-    /// The rank of the plane that the velocities lie in.
+    /// The rank of the plane that contains the velocities.
     rank: usize,
-    /// The same, of a whole movement.
+    /// The same rank for a whole movement.
     whole: Option<usize>,
-    /// Noise of its rows in that of others (S44): above 1 if other movements contradict it.
+    /// Noise factor of its rows (S44): above 1 if other movements contradict the stretch.
     pub(crate) doubt: f64,
 }
 
 /// Whether constraints may switch within a movement.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Switches {
-    /// They are looked for where they are not known.
+    /// Switches are searched for unless they are known.
     Sought,
-    /// Every movement is one stretch, or none: noise and curvature of a long one look like switches.
+    /// Every movement is one stretch, or none, because noise and curvature of a long one look like switches.
     None,
 }
 
@@ -70,14 +70,13 @@ pub(crate) struct Stretches {
     pub(crate) noise: f64,
     /// Whether the constraints may push.
     pub(crate) pushed: bool,
-    /// The task space in which A and b are constant; none: the recorded coordinates.
+    /// The task space in which A and b are constant; `None`: the recorded coordinates.
     pub(crate) through: Option<Through>,
 }
 
 impl Stretches {
-    /// Looks for stretches in all movements; none in another metric, in so many dimensions, or in so few samples, that
-    /// nothing can be found.
-    /// Takes time with the number of movements and the cube of the dimension.
+    /// Searches for stretches in all movements; `None` in another metric, or if the dimension is too large or the samples too few. Time
+    /// grows with the number of movements and the cube of the dimension.
     pub(crate) fn of(rows: &Rows, view: &View<'_>, switches: Switches) -> Option<Stretches> {
         if rows.dim() < 2 || view.dim() > MOST_DIMENSIONS || rows.momenta().is_some() {
             return None;
@@ -111,13 +110,13 @@ impl Stretches {
         (!stretches.is_empty()).then_some(Stretches { all: stretches, noise, pushed: true, through })
     }
 
-    /// Whether every movement that has one is one.
+    /// Whether all stretches are whole movements.
     pub(crate) fn are_whole(&self) -> bool {
         self.all.iter().all(|stretch| stretch.whole.is_some())
     }
 
-    /// Those that are whole movements, with directions from the velocities themselves, not from their differences: more
-    /// certain, and right where b = 0. In a task space also all others, as they are if b is not 0. `view` is the one they were found in.
+    /// The stretches that are whole movements, with directions from the velocities themselves instead of their differences: more certain,
+    /// and correct if b = 0. In a task space also all other stretches, unchanged. `view` is the one in which they were found.
     pub(crate) fn without_push(&self, rows: &Rows, view: &View<'_>) -> Stretches {
         let Stretches { noise, through, .. } = self;
         let mut of_trajectories: HashMap<usize, Vec<usize>> = HashMap::new();
@@ -155,13 +154,13 @@ impl Stretch {
     }
 }
 
-/// `at`, all rows in their order, by movement, and where labels tell switches, by the parts between them.
+/// Splits `at`, all rows in order, by movement, and, if labels mark switches, at these.
 pub(crate) fn parts<'a>(rows: &Rows, at: &'a [usize]) -> Vec<&'a [usize]> {
     let of = |row: usize| (rows.indices()[row].trajectory, rows.labels().map(|labels| labels[row]));
     at.chunk_by(|&a, &b| of(a) == of(b)).collect()
 }
 
-/// The mean of the columns, and the columns about it.
+/// The mean of the columns, and the columns minus the mean.
 pub(crate) fn centred(columns: &DMatrix<f64>) -> (DVector<f64>, DMatrix<f64>) {
     let mean = columns.column_mean();
     let mut centred = columns.clone();
@@ -169,7 +168,7 @@ pub(crate) fn centred(columns: &DMatrix<f64>) -> (DVector<f64>, DMatrix<f64>) {
     (mean, centred)
 }
 
-/// At most so many of the rows, evenly far from each other, with the first and the last.
+/// At most `most` of the rows, evenly spaced, including the first and the last.
 pub(crate) fn evenly(rows: &[usize], most: usize) -> Vec<usize> {
     if rows.len() <= most {
         return rows.to_vec();
@@ -177,14 +176,14 @@ pub(crate) fn evenly(rows: &[usize], most: usize) -> Vec<usize> {
     (0..most).map(|at| rows[at * (rows.len() - 1) / (most - 1)]).collect()
 }
 
-/// Directions in which some velocities lie.
+/// Directions that span some velocities.
 struct Span {
     directions: DMatrix<f64>,
     lengths: Vec<f64>,
 }
 
 impl Span {
-    /// Those of the first `rank` directions whose singular value is at least `least`; and the whole decomposition.
+    /// Those of the first `rank` directions whose singular value is at least `least`; also returns the whole decomposition.
     fn of(velocities: DMatrix<f64>, (rank, least): (usize, f64), noise: f64) -> Option<(SVD<f64, Dyn, Dyn>, Span)> {
         let count = velocities.ncols() as f64;
         let svd = velocities.svd(true, false);
@@ -195,14 +194,14 @@ impl Span {
         Some((svd, Span { directions, lengths }))
     }
 
-    /// Whether there are rows of such a stretch: without a direction joints move a hand that keeps still, and nothing else.
+    /// Whether such a stretch has rows. Without a direction, the only free motion is that of joints while the hand is still.
     fn is_enough(&self, view: &View<'_>) -> bool {
         !self.lengths.is_empty() || view.through.is_some()
     }
 }
 
-/// The samples `inside`, whose velocities lie in a plane of this rank, with directions along which these are at least `least`
-/// long; none if there are no rows of it.
+/// The stretch of the samples `inside`, whose velocities lie in a plane of this rank, with the directions whose singular values are at
+/// least `least`; `None` if it has no rows.
 fn stretch(rows: &Rows, view: &View<'_>, inside: &[usize], (rank, least): (usize, f64), noise: f64) -> Option<Stretch> {
     let (mean, centred) = centred(&view.velocities.select_columns(inside));
     let (svd, span) = Span::of(centred, (rank, least), noise)?;
@@ -212,7 +211,7 @@ fn stretch(rows: &Rows, view: &View<'_>, inside: &[usize], (rank, least): (usize
     let plane = svd.u?.columns(0, rank).into_owned();
     let along = plane.tr_mul(&mean);
     let push = &mean - &plane * &along;
-    // Noise moves the mean, and it tilts the plane.
+    // Noise shifts the mean and tilts the plane.
     let tilt: f64 = along.iter().zip(&svd.singular_values).map(|(u, s)| (u / s).powi(2)).sum();
     let variance = noise * (1.0 / inside.len() as f64 + tilt);
     let index = |row: usize| rows.indices()[row];
@@ -240,8 +239,8 @@ mod tests {
     use super::*;
 
     proptest! {
-        /// Under constraints that push, with noise: a stretch between any two switches that are known, whatever they are called, and
-        /// one where none is.
+        /// With pushing constraints and noise: one stretch between any two known switches, whatever the labels are, and one in a movement
+        /// without a switch.
         #[test]
         fn stretches_lie_between_known_switches(
             dim in 2usize..4,
@@ -266,7 +265,7 @@ mod tests {
             let count = columns.len();
             let indices = (0..count).map(|sample| SampleIndex { trajectory: 0, sample }).collect();
             let rows = Rows::new(draw(dim, count), DMatrix::from_columns(&columns), indices).unwrap();
-            // Few windows tell too little of the noise.
+            // A few windows do not determine the noise well enough.
             let rows = rows.with_variances(vec![1e-6 / 3.0; count]).unwrap();
             let found = |labels: Vec<usize>| {
                 let rows = rows.clone().with_labels(labels).unwrap();

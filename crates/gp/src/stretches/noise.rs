@@ -1,24 +1,24 @@
-//! (S20): the noise of velocities, before anything is known of constraints.
+//! (S20): the noise of velocities, before constraints are known.
 
 use nalgebra::DMatrix;
 
 use crate::stretches::centred;
 use motion::upper_median;
 
-/// Squares of the coefficients 1, 3, 3, 1 of a third difference, summed.
+/// Sum of the squared coefficients 1, 3, 3, 1 of a third difference.
 const THIRD_DIFFERENCE: f64 = 20.0;
-/// Samples beyond the dimension in a window whose least extent is noise where a constraint acts.
+/// Number of samples of a window beyond the dimension; its least extent is noise if a constraint acts.
 const WINDOW: usize = 5;
-/// The quantile of windows: most of these hold no switch where switches are few.
+/// Quantile of windows: if switches are rare, most windows contain none.
 const QUANTILE: f64 = 0.3;
-/// What the least extent of a window can be, relative to noise.
+/// Factor by which the least extent of a window may underestimate the noise.
 const TIMES: f64 = 3.0;
-/// Least variance, in mean squares of the velocities: what rounding leaves.
+/// Minimum variance, in mean squares of the velocities, due to rounding.
 const ROUNDING: f64 = 1e-14;
 
-/// s², the variance of a velocity along an axis: the smaller of two upper bounds. Third differences also hold the curvature
-/// of the motion, the least extent of windows also holds switches and free movement. At least the median of variances that
-/// are known; none without three samples next to each other.
+/// s², the variance of a velocity along an axis: the smaller of two upper bounds. Third differences also contain the curvature
+/// of the motion; the least extent of windows also contains switches and free movement. At least the median of known variances;
+/// `None` without three successive samples.
 pub(crate) fn velocity_noise(
     velocities: &DMatrix<f64>,
     variances: Option<&[f64]>,
@@ -35,12 +35,12 @@ pub(crate) fn velocity_noise(
     Some(from_differences.min(TIMES * from_windows).max(ROUNDING * mean_square).max(known_noise(variances)))
 }
 
-/// The median of variances that are known, 0 if none are.
+/// The median of known variances, 0 if none are known.
 pub(crate) fn known_noise(variances: Option<&[f64]>) -> f64 {
     variances.and_then(|variances| upper_median(variances.to_vec())).unwrap_or(0.0)
 }
 
-/// The variance of a velocity along an axis by third differences, an upper bound; none without three samples next to each other.
+/// The variance of a velocity along an axis from third differences, an upper bound; `None` without three successive samples.
 pub(crate) fn noise_of_differences(velocities: &DMatrix<f64>, movements: &[&[usize]]) -> Option<f64> {
     let dim = velocities.nrows();
     let velocity = |row: usize| velocities.column(row);

@@ -1,9 +1,9 @@
-//! Cutting a movement into parts of the least cost.
+//! Divides a movement into the parts with the least total cost.
 
-/// Samples beyond the dimension of what it is fitted with that a part needs.
+/// Minimum number of samples of a part beyond the dimension of its model.
 pub(crate) const SPARE: usize = 4;
 
-/// Samples `begin..end` of a movement, and what they are.
+/// Samples `begin..end` of a movement, and their kind.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Part<K> {
     pub(crate) begin: usize,
@@ -11,27 +11,27 @@ pub(crate) struct Part<K> {
     pub(crate) kind: K,
 }
 
-/// What parts cost.
+/// Costs of parts.
 pub(crate) trait Costs {
-    /// What a part may be.
+    /// The kind of a part.
     type Kind: Copy;
 
-    /// The least cost of samples begin..end, at least [`SPARE`] of them, and of which kind they are then.
+    /// The least cost of samples begin..end, at least [`SPARE`] of them, and the kind that has it.
     fn cost(&mut self, begin: usize, end: usize) -> (f64, Self::Kind);
 
-    /// A number that this cost does not go below, found in little time.
+    /// A lower bound on this cost that is fast to compute.
     fn at_least(&self, begin: usize, end: usize) -> f64;
 }
 
-/// The parts of `count` samples whose costs, with `alone` for each sample in none, have the least sum; of several such the one whose last
-/// part is the longest. Looks at all pairs, and asks for the costs of those whose bounds leave it open whether they are best.
+/// The parts of `count` samples with the least total cost, where `alone` is the cost of each sample in no part. Among equal sums, takes
+/// the one whose last part is longest. Considers all pairs, and computes the cost of those that their bounds do not exclude.
 pub(crate) fn cheapest_parts<C: Costs>(count: usize, alone: f64, mut costs: C) -> Vec<Part<C::Kind>> {
     // The least cost of the samples before each, and the part that ends there, if any.
     let mut least = vec![0.0; count + 1];
     let mut ending: Vec<Option<Part<C::Kind>>> = vec![None; count + 1];
     for end in 1..=count {
         least[end] = least[end - 1] + alone;
-        // Mostly a part goes on: what costs more than that is not looked at.
+        // Usually a part continues, so candidates that cost more than its continuation are skipped.
         let on = ending[end - 1].filter(|part| part.begin + SPARE <= end);
         let on = on.map(|part| (part.begin, costs.cost(part.begin, end)));
         let most = on.as_ref().map_or(least[end], |(begin, (own, _))| least[end].min(least[*begin] + own));
@@ -59,16 +59,16 @@ pub(crate) fn cheapest_parts<C: Costs>(count: usize, alone: f64, mut costs: C) -
     found
 }
 
-/// Sums of squares that cannot fall as a part grows: for each begin those of the last part that was looked at.
+/// Sums of squares that cannot decrease as a part grows; for each begin, those of the last part that was evaluated.
 #[derive(Debug, Clone)]
 pub(crate) struct Growing {
     seen: Vec<Vec<f64>>,
-    /// By how much rounding may lower one.
+    /// Amount by which rounding may lower a sum.
     rounding: f64,
 }
 
 impl Growing {
-    /// For `count` samples; `total` is as large as any sum that the sums of parts are differences of.
+    /// For `count` samples; `total` is at least as large as the sums whose differences are the parts' sums.
     pub(crate) fn new(count: usize, total: f64) -> Self {
         Growing { seen: vec![Vec::new(); count], rounding: ROUNDINGS * f64::EPSILON * total }
     }
@@ -78,20 +78,20 @@ impl Growing {
         self.seen[begin].extend_from_slice(sums);
     }
 
-    /// A bound of one of the sums of all longer parts.
+    /// A lower bound on one of the sums of all longer parts.
     pub(crate) fn at_least(&self, begin: usize, which: usize) -> f64 {
         self.seen[begin].get(which).map_or(0.0, |sum| (sum - self.rounding).max(0.0))
     }
 }
 
-/// Rounding errors that a sum of squares is the result of, at most, in the way they add up.
+/// Maximum accumulated rounding error of a sum of squares, in units of the machine epsilon.
 const ROUNDINGS: f64 = 64.0;
 
-/// Of samples that a label says belong together, at most so many at either end may belong to what was before or comes after: labels
-/// are late, and smoothing reaches across a switch.
+/// Maximum number of samples at either end of a labelled part that may belong to the previous or next part, because labels are late, and
+/// smoothing reaches across a switch.
 const STRAY: usize = 2;
 
-/// The part of `count` samples among which nothing switched, as [`cheapest_parts`] would cost it; none if samples in no part cost less.
+/// The part of `count` samples without a switch, with the costs of [`cheapest_parts`]; `None` if samples in no part cost less.
 pub(crate) fn known_part<C: Costs>(count: usize, alone: f64, mut costs: C) -> Option<Part<C::Kind>> {
     let mut best = (alone * count as f64, None);
     for end in (count.saturating_sub(STRAY)..=count).rev() {
@@ -119,7 +119,7 @@ mod tests {
     use super::*;
     use crate::stretches::segmentation::{PARAMETER, PlaneCosts};
 
-    /// The same without any bound.
+    /// The same costs without bounds.
     struct Unbounded(PlaneCosts);
 
     impl Costs for Unbounded {
@@ -135,8 +135,8 @@ mod tests {
     }
 
     proptest! {
-        /// Bounds leave out what is not the best: the same parts as of all pairs, of planes that push and switch, with much noise or at
-        /// the limit of rounding, or of velocities without any plane.
+        /// Bounds only exclude parts that are not the best: the result equals that of all pairs, for planes with pushes and switches,
+        /// with much noise or at the limit of rounding, and for velocities without a plane.
         #[test]
         fn bounds_change_nothing(
             dim in 2usize..5,

@@ -13,18 +13,18 @@ use crate::stretches::view::{Free, Through};
 use crate::stretches::{Stretch, Stretches};
 use motion::{SampleIndex, upper_median};
 
-/// Rows are used whose squared length exceeds this share of the mean square of all.
+/// Rows are used if their squared length exceeds this share of the mean square of all.
 const LEAST: f64 = 1e-12;
-/// (S24): mean square of pushes, in units of what noise alone gives, below which nothing pushes.
+/// (S24): minimum mean square of pushes, relative to that of noise alone, for a push to be detected.
 const LEAST_SIGNIFICANCE: f64 = 4.0;
-/// Largest square of one push that counts, for each of its normals: a straight movement looks pushed, and one alone must not tell.
+/// Maximum contribution of one stretch, per normal: a straight movement looks pushed, and a single one must not decide.
 const MOST_OF_ONE: f64 = 40.0;
-/// Movements that must have stretches.
+/// Minimum number of movements that have stretches.
 const LEAST_MOVEMENTS: usize = 3;
 
 /// One equation vᵀπ(x) = vᵀu.
 struct Equation<'a> {
-    /// The sample's row.
+    /// Row index of the sample.
     row: usize,
     /// v, (n).
     direction: DVectorView<'a, f64>,
@@ -34,20 +34,21 @@ struct Equation<'a> {
     noise: f64,
     /// ℓ_k of its direction.
     direction_length: f64,
-    /// That of its stretch.
+    /// Noise factor of its stretch.
     doubt: f64,
 }
 
-/// At most `most` of the equations that these rows give, by their places.
+/// At most `most` of the equations that belong to these rows, as indices.
 fn few(of_rows: &[usize], rows: &Rows, most: usize) -> Vec<usize> {
     let trajectory = |&at: &usize| rows.indices()[of_rows[at]].trajectory;
     let all: Vec<usize> = (0..of_rows.len()).collect();
     thinned(all.chunk_by(|a, b| trajectory(a) == trajectory(b)), most, || MIDDLE)
 }
 
-/// Share of the movements of `samples` that have `own` rows, those of stretches: fewer movements have to predict so much better.
+/// Share of the movements of `samples` that have `own` rows, those of stretches; models of fewer movements have to predict correspondingly
+/// better.
 pub(crate) fn covered(rows: &Rows, own: &Kept, samples: &Kept) -> f64 {
-    // Further trajectories have no samples to look for stretches in.
+    // Further trajectories have no samples that could be searched for stretches.
     let last = rows.indices().iter().map(|index| index.trajectory).max();
     let count =
         |kept: &Kept| kept.trajectories().into_iter().filter(|&trajectory| Some(trajectory) <= last).count() as f64;
@@ -55,10 +56,10 @@ pub(crate) fn covered(rows: &Rows, own: &Kept, samples: &Kept) -> f64 {
 }
 
 impl Stretches {
-    /// Rows of all samples that lie in stretches, with their noise weights (S23), (S44); evenly many of them, where they are more
-    /// than `selection` allows. None if they are of too few movements.
+    /// Rows of all samples in stretches, with their noise weights (S23), (S44), evenly thinned to the limits of `selection`. `None` if
+    /// they come from too few movements.
     ///
-    /// In a task space there are several for each sample, whose directions do not depend on the velocity: `rows` may be means (S33) there.
+    /// In a task space each sample has several rows, whose directions do not depend on the velocity, so `rows` may be means (S33).
     pub(crate) fn rows(&self, rows: &Rows, kept: &Kept, selection: &Selection) -> Option<Kept> {
         let found = self.rows_with(rows, kept, selection.max_rows, &[])?;
         let count = found.rows.len();
@@ -66,15 +67,14 @@ impl Stretches {
         Some(Kept { hyper, ..found })
     }
 
-    /// `some`, rows of these stretches, and about `most` of them, as if none were contradicted, without hyper rows.
+    /// `some`, rows of these stretches, and about `most` of all their rows, as if no stretch were contradicted, without hyper rows.
     pub(crate) fn of_any(&self, rows: &Rows, some: &Kept, most: usize) -> Option<Kept> {
         let mut all = self.clone();
         all.all.iter_mut().for_each(|stretch| stretch.doubt = 1.0);
         all.rows_with(rows, some, most, &some.rows)
     }
 
-    /// The same as `some`, rows of these stretches, and those that were thinned, about `most` of these, without hyper rows; none if
-    /// `some` are all.
+    /// `some`, rows of these stretches, and about `most` of all their rows, without hyper rows; `None` if none were thinned.
     pub(crate) fn more_rows(&self, rows: &Rows, some: &Kept, most: usize) -> Option<Kept> {
         if some.dropped.thinned == 0 {
             return None;
@@ -82,7 +82,7 @@ impl Stretches {
         self.rows_with(rows, some, most, &some.rows)
     }
 
-    /// About `most` of all rows, `also` among them, without hyper rows.
+    /// About `most` of all rows, and those in `also`, without hyper rows.
     fn rows_with(&self, rows: &Rows, kept: &Kept, most: usize, also: &[usize]) -> Option<Kept> {
         let free = self.through.as_ref().map(|through| self.free(through, rows));
         let all = || (0..rows.len()).flat_map(|row| self.equations(rows, free.as_deref(), row));
@@ -146,7 +146,7 @@ impl Stretches {
         rows.indices().iter().fold(RowsDropped { thinned, ..RowsDropped::default() }, of)
     }
 
-    /// The directions of (S41) of every sample.
+    /// The directions (S41) of each sample.
     fn free(&self, through: &Through, rows: &Rows) -> Vec<Vec<Free>> {
         let of = |row: usize| {
             let stretch = self.at(rows.indices()[row]);
@@ -155,7 +155,7 @@ impl Stretches {
         (0..rows.len()).into_par_iter().map(of).collect()
     }
 
-    /// (S22) of one sample, or (S41) of its `free` directions, each of them.
+    /// The equations of one sample: (S22), or (S41) for each of its `free` directions.
     fn equations<'a>(
         &'a self,
         rows: &'a Rows,
@@ -178,12 +178,12 @@ impl Stretches {
         })
     }
 
-    /// The stretch that holds a sample.
+    /// The stretch that contains a sample.
     fn at(&self, index: SampleIndex) -> Option<&Stretch> {
         Some(&self.all[self.place(index)?])
     }
 
-    /// Which of the stretches holds a sample.
+    /// Index of the stretch that contains a sample.
     pub(crate) fn place(&self, index: SampleIndex) -> Option<usize> {
         let before = |stretch: &Stretch| (stretch.trajectory, stretch.samples.1) < (index.trajectory, index.sample);
         let place = self.all.partition_point(before);
@@ -198,7 +198,7 @@ impl Stretches {
         (squares / f64::from(count)).sqrt()
     }
 
-    /// Those that are not contradicted.
+    /// The stretches that are not contradicted.
     fn right(&self) -> impl Iterator<Item = &Stretch> {
         self.all.iter().filter(|stretch| !stretch.is_contradicted())
     }
@@ -208,7 +208,7 @@ impl Stretches {
         self.significance() >= LEAST_SIGNIFICANCE
     }
 
-    /// Mean square of the pushes along normals, in units of what noise would give: about 1 where nothing pushes.
+    /// Mean square of the pushes along normals, relative to that of noise: about 1 if nothing pushes.
     fn significance(&self) -> f64 {
         let all = self.right().map(|stretch| stretch.significance);
         let (squares, normals) = all.fold((0.0, 0.0), |(squares, normals), (square, count)| {
@@ -248,7 +248,7 @@ mod tests {
     }
 
     proptest! {
-        /// (S24): without a push one stretch, however far it seems to be pushed, does not tell; a tenth of all do.
+        /// (S24): if nothing pushes, one stretch, however pushed it seems, does not decide; a tenth of all stretches do.
         #[test]
         fn one_stretch_does_not_tell_a_push(
             normals in 1usize..3,
@@ -267,7 +267,7 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(16))]
 
-        /// More rows of stretches are about as many as asked for, and among them those that there were, unchanged; none beyond all.
+        /// The result has about the requested number of rows and contains the previous ones unchanged; `None` beyond all.
         #[test]
         fn more_rows_hold_the_fewer(seed in any::<u64>(), few in 20usize..60, most in 60usize..400) {
             let system = CyclesWithTask { n_trajectories: 6, ..CyclesWithTask::default() };

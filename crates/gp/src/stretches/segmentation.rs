@@ -1,28 +1,28 @@
-//! (S21): where in a movement the constraint switched.
+//! (S21): detects the switches of the constraint within a movement.
 
 use nalgebra::{DMatrix, DVector};
 
 use crate::stretches::partition::{Costs, Growing, Part, SPARE, cheapest_parts, known_part};
 
-/// Half the logarithm of the number of samples, about: what a parameter costs in half squared standard deviations.
+/// About half the logarithm of the number of samples: the cost of a parameter, in half squared standard deviations.
 pub(crate) const PARAMETER: f64 = 2.5;
-/// What one more dimension of the plane costs. Without it a plane takes in a foreign sample by one dimension more, since a
-/// plane of q + 1 dimensions goes through it exactly.
+/// Cost of one more dimension of the plane. Without it a plane would include a foreign sample at the cost of one dimension,
+/// because a plane of q + 1 dimensions contains it exactly.
 pub(crate) const DIMENSION: f64 = 10.0;
-/// What one more segment costs.
+/// Cost of one more segment.
 pub(crate) const SEGMENT: f64 = 6.0;
 
 /// Samples whose velocities lie in a plane; the kind is its rank, below n.
 pub(super) type Segment = Part<usize>;
 
-/// Cuts a movement into segments whose velocities, (n, N), lie in planes, or in none. `noise` is the variance of a velocity
-/// along an axis. A dynamic programme over all pairs: time with N² n³.
+/// Cuts a movement into segments whose velocities, (n, N), lie in planes; some samples may be in none. `noise` is the
+/// variance of a velocity along an axis. Dynamic programming over all pairs, in N² n³ time.
 pub(super) fn segments(velocities: &DMatrix<f64>, noise: f64) -> Vec<Segment> {
     let (dim, count) = velocities.shape();
     cheapest_parts(count, PARAMETER * dim as f64, PlaneCosts::of(velocities, noise))
 }
 
-/// The same where no constraint switched among these samples: all of them, but for a few at the ends.
+/// The segment of samples without a switch: all of them, except a few at the ends.
 pub(super) fn known_segment(velocities: &DMatrix<f64>, noise: f64) -> Option<Segment> {
     let (dim, count) = velocities.shape();
     known_part(count, PARAMETER * dim as f64, PlaneCosts::of(velocities, noise))
@@ -33,7 +33,7 @@ pub(super) fn known_segment(velocities: &DMatrix<f64>, noise: f64) -> Option<Seg
 pub(crate) struct PlaneCosts {
     sums: PrefixSums,
     noise: f64,
-    /// Squares that planes of each rank leave.
+    /// Residual sums of squares of planes of each rank.
     left: Growing,
 }
 
@@ -44,7 +44,8 @@ impl PlaneCosts {
         PlaneCosts { sums, noise, left }
     }
 
-    /// Of a plane of this rank, which leaves these squares, through so many samples; none if they are too few.
+    /// Cost of a plane of this rank with the residual sum of squares `left`, for `length` samples; `None` if these are too
+    /// few.
     fn of_rank(&self, rank: usize, length: usize, left: f64) -> Option<f64> {
         let dim = self.sums.dim;
         let parameters = (rank * length + (rank + 1) * (dim - rank)) as f64;
@@ -81,11 +82,11 @@ impl Costs for PlaneCosts {
     }
 }
 
-/// Sums of u and u uᵀ over the first samples, of velocities about their mean.
+/// Cumulative sums of u and u uᵀ, of velocities relative to their mean.
 #[derive(Debug, Clone)]
 pub(crate) struct PrefixSums {
     dim: usize,
-    /// None where scatters are about 0.
+    /// `None` for scatters about 0.
     first: Option<Vec<DVector<f64>>>,
     second: Vec<DMatrix<f64>>,
 }
@@ -95,7 +96,7 @@ impl PrefixSums {
         PrefixSums::about(velocities, &velocities.column_mean())
     }
 
-    /// Of scatters about 0 instead of the mean.
+    /// Sums for scatters about 0 instead of the mean.
     pub(crate) fn about_zero(velocities: &DMatrix<f64>) -> Self {
         PrefixSums { first: None, ..PrefixSums::about(velocities, &DVector::zeros(velocities.nrows())) }
     }
@@ -139,7 +140,8 @@ mod tests {
 
     use super::*;
 
-    /// Random velocities whose part along a normal is constant, with another normal and another constant from `switch` on.
+    /// Random velocities with a constant component along a normal; from `switch` on, with another normal and another
+    /// constant.
     fn pushed(dim: usize, count: usize, switch: usize, seed: u64) -> DMatrix<f64> {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         let mut draw = |rows, columns| DMatrix::from_fn(rows, columns, |_, _| 2.0 * rng.random::<f64>() - 1.0);
@@ -155,7 +157,7 @@ mod tests {
     }
 
     proptest! {
-        /// A switch between two planes is found to the sample, and so is the dimension of both.
+        /// A switch between two planes is found to the sample, and so are the dimensions of both.
         #[test]
         fn switches_are_found(dim in 2usize..5, before in 25usize..40, after in 25usize..40, seed in any::<u64>()) {
             let velocities = pushed(dim, before + after, before, seed);
@@ -166,7 +168,7 @@ mod tests {
             prop_assert_eq!(found, expected);
         }
 
-        /// Sums over the beginning give the scatter of any part as its definition does.
+        /// The scatter of any part from cumulative sums equals its definition.
         #[test]
         fn scatters_are_as_defined(dim in 1usize..5, begin in 0usize..10, length in 2usize..10, seed in any::<u64>()) {
             let velocities = pushed(dim, 20, 10, seed);
@@ -179,7 +181,7 @@ mod tests {
             prop_assert!((about_zero - &part * part.transpose()).amax() < 1e-12);
         }
 
-        /// Velocities in all directions have no segment, whatever the noise is thought to be below them.
+        /// Velocities in all directions have no segment, whatever lower noise is assumed.
         #[test]
         fn free_movement_has_none(dim in 2usize..5, count in 20usize..50, seed in any::<u64>()) {
             let mut rng = ChaCha8Rng::seed_from_u64(seed);

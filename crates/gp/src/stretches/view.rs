@@ -1,4 +1,4 @@
-//! Velocities among which stretches are looked for: those recorded, or of a task space (S40).
+//! Velocities that are searched for stretches: those recorded, or those of a task space (S40).
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -10,18 +10,18 @@ use crate::Rows;
 /// Share of the largest singular value below which A has no row.
 const SINGULAR: f64 = 1e-9;
 
-/// The rows as they are recorded, or as one of their task spaces shows them.
+/// The rows as recorded, or in one of their task spaces.
 pub(crate) struct View<'a> {
     /// Velocities, (m, N).
     pub(super) velocities: Cow<'a, DMatrix<f64>>,
-    /// None of the recorded coordinates.
+    /// `None` for the recorded coordinates.
     pub(super) through: Option<Through>,
 }
 
-/// A task space of some rows in units in which noise of u is as large along all directions.
+/// A task space of some rows, in units that make the noise of u equally large along all directions.
 #[derive(Debug, Clone)]
 pub(crate) struct Through {
-    /// Its place among those of the rows.
+    /// Its index among the task spaces of the rows.
     pub(crate) space: usize,
     /// W of (S40) of each trajectory, (m', m).
     evening: BTreeMap<usize, DMatrix<f64>>,
@@ -32,7 +32,7 @@ impl<'a> View<'a> {
         View { velocities: Cow::Borrowed(rows.velocities()), through: None }
     }
 
-    /// WJu of (S40); none of a space in which nothing moves.
+    /// WJu of (S40); `None` for a space without motion.
     pub(crate) fn in_space(rows: &'a Rows, space: usize) -> Option<Self> {
         let all: Vec<usize> = (0..rows.len()).collect();
         let trajectory = |row: &usize| rows.indices()[*row].trajectory;
@@ -50,7 +50,7 @@ impl<'a> View<'a> {
         self.velocities.nrows()
     }
 
-    /// The velocity A⁺b of the recorded coordinates, (n), that makes this one, (m'), along the normals of a plane with these directions,
+    /// The velocity A⁺b in recorded coordinates, (n), that produces this one, (m'), along the normals of a plane with these directions,
     /// at one row.
     pub(super) fn recorded_push(
         &self,
@@ -70,7 +70,7 @@ impl<'a> View<'a> {
 /// A direction v of (S41).
 pub(super) struct Free {
     pub(super) direction: DVector<f64>,
-    /// ℓ of (S41): the noise over the standard deviation of its angle.
+    /// ℓ of (S41): the noise divided by the standard deviation of its angle.
     pub(super) length: f64,
 }
 
@@ -82,8 +82,8 @@ impl Through {
         jacobians.map_or_else(|| evening.clone(), |jacobians| evening * &jacobians[row])
     }
 
-    /// (S41): orthonormal directions of the recorded coordinates that the hand answers with one of `directions` (m', q), whose angles
-    /// have the standard deviations s/`lengths` (q), or not at all.
+    /// (S41): orthonormal directions of the recorded coordinates to which the hand responds along one of `directions` (m', q), or not at
+    /// all. The angles of `directions` have the standard deviations s/`lengths` (q).
     pub(super) fn free(&self, rows: &Rows, row: usize, directions: &DMatrix<f64>, lengths: &[f64]) -> Vec<Free> {
         let jacobian = self.jacobian(rows, row);
         let matrix = complement(directions).tr_mul(&jacobian);
@@ -98,7 +98,7 @@ impl Through {
     }
 }
 
-/// Orthonormal directions (m, m − q) at right angles to orthonormal ones, (m, q).
+/// Orthonormal directions (m, m − q) orthogonal to given orthonormal ones, (m, q).
 fn complement(directions: &DMatrix<f64>) -> DMatrix<f64> {
     let m = directions.nrows();
     let eigen = (DMatrix::identity(m, m) - directions * directions.transpose()).symmetric_eigen();
@@ -106,7 +106,7 @@ fn complement(directions: &DMatrix<f64>) -> DMatrix<f64> {
     eigen.eigenvectors.select_columns(&left)
 }
 
-/// Orthonormal directions (n, n − k) in the null space of a matrix (k, n), turned so that none is an axis that nothing moves along.
+/// Orthonormal directions (n, n − k) in the null space of a matrix (k, n), rotated so that none is an axis without motion.
 fn null_space(matrix: &DMatrix<f64>) -> DMatrix<f64> {
     let n = matrix.ncols();
     let svd = matrix.transpose().svd(true, false);
@@ -141,8 +141,8 @@ mod tests {
     const COUNT: usize = 30;
 
     proptest! {
-        /// Whatever a policy does at random poses of a robot, under ΛJu = b with random Λ and b of each movement: vᵀu = vᵀπ for the n − k
-        /// directions v of every sample that are found without Λ and b.
+        /// For any policy at random poses of a robot, under ΛJu = b with random Λ and b for each movement: vᵀu = vᵀπ holds for the n − k
+        /// directions v of each sample, which are found without Λ and b.
         #[test]
         fn rows_hold_under_any_constraint_of_a_link(
             robot in 0usize..3,
@@ -161,7 +161,7 @@ mod tests {
             for state in states.column_iter() {
                 let mut jacobian = Matrix6xX::zeros(n);
                 chain.jacobian(state, &mut workspace, &mut jacobian).unwrap();
-                // Of the position, the orientation, or both.
+                // Position, orientation, or both.
                 let rows = [(0, 3), (3, 3), (0, 6), (0, 6)][first];
                 jacobians.push(DMatrix::from_fn(rows.1, n, |row, joint| jacobian[(rows.0 + row, joint)]));
             }
@@ -170,7 +170,7 @@ mod tests {
             prop_assume!(moved.ncols() > 1);
             let rank = 1 + rank % (moved.ncols().min(n) - 1);
             let (wanted, mut velocities) = (draw(n, 3 * COUNT), DMatrix::zeros(n, 3 * COUNT));
-            // How much rounding grows at poses that are nearly singular.
+            // Amplification of rounding at nearly singular poses.
             let of = |matrix: &DMatrix<f64>| {
                 let lengths = matrix.singular_values();
                 lengths.max() / lengths.min()

@@ -4,15 +4,16 @@ use nalgebra::DMatrix;
 
 use crate::stretches::partition::SPARE;
 
-/// Largest standard deviation of a direction's angle.
+/// Maximum standard deviation of a direction's angle.
 const ANGLE: f64 = 0.25;
-/// By how many standard deviations of χ² the velocities may leave the plane.
+/// Tolerance of the residuals outside the plane, in standard deviations of χ².
 const LEAVES: f64 = 3.0;
-/// Samples before and after a place that show whether velocities jump there.
+/// Number of samples before and after a place that are tested for a jump of the velocities.
 const NEAR: usize = 8;
 
-/// The least rank of a plane through 0 that holds all velocities, (n, N), of a movement up to noise, and no more than `most` (the largest of its
-/// segments) or 1; none if there is no such plane. A plane of more dimensions would hold two stretches of fewer.
+/// The least rank of a plane through 0 that contains all velocities, (n, N), of a movement up to noise. The rank is at most `most` (the
+/// largest of its segments), or 1; `None` if there is no such plane. A plane of higher dimension might contain two stretches of lower
+/// dimension.
 pub(super) fn whole(velocities: &DMatrix<f64>, most: usize, noise: f64) -> Option<usize> {
     let (dim, count) = velocities.shape();
     let mut eigenvalues = (velocities * velocities.transpose()).symmetric_eigenvalues().as_slice().to_vec();
@@ -26,8 +27,8 @@ pub(super) fn whole(velocities: &DMatrix<f64>, most: usize, noise: f64) -> Optio
     (1..=most.max(1).min(dim - 1)).filter(|rank| count >= rank + SPARE).find(|&rank| outside(rank) <= allowed(rank))
 }
 
-/// Whether velocities, (n, N), jump (S45): somewhere the squares that two lines in time leave, one of the samples before and one of those
-/// after, are less than half of what a cubic leaves, which has as many coefficients and leaves more than noise.
+/// Whether velocities, (n, N), jump (S45): somewhere the residual sum of squares of two lines in time, one through the samples before and
+/// one through those after, is less than half that of a cubic, which has as many coefficients and leaves more than noise.
 pub(super) fn jumps(velocities: &DMatrix<f64>, noise: f64) -> bool {
     let polynomials = |count: usize, coefficients: usize| {
         let time = |at: usize| 2.0 * at as f64 / (count - 1) as f64 - 1.0;
@@ -45,7 +46,7 @@ pub(super) fn jumps(velocities: &DMatrix<f64>, noise: f64) -> bool {
     })
 }
 
-/// The least singular value of `count` velocities along a direction whose angle is certain enough: s√N of it is noise.
+/// The least singular value of `count` velocities along a direction whose angle is certain enough; s√N of it is noise.
 pub(super) fn least_length(count: usize, noise: f64) -> f64 {
     let half = 0.5 / ANGLE;
     noise.sqrt() * (half + (half * half + count as f64).sqrt())
@@ -61,7 +62,7 @@ mod tests {
     use super::*;
     use crate::stretches::centred;
 
-    /// Velocities on a random plane of this rank, some way from 0, with uniform noise of a variance of 1e-4.
+    /// Velocities on a random plane of this rank, at a distance from 0, with uniform noise of variance 1e-4.
     fn in_plane(dim: usize, rank: usize, count: usize, rng: &mut ChaCha8Rng) -> DMatrix<f64> {
         let mut draw = |rows, columns| DMatrix::from_fn(rows, columns, |_, _| 2.0 * rng.random::<f64>() - 1.0);
         let (basis, push) = (draw(dim, rank).qr().q(), DVector::from_column_slice(draw(dim, 1).as_slice()));
@@ -71,7 +72,7 @@ mod tests {
     }
 
     proptest! {
-        /// One plane, pushed, is found with its rank, of which no segment of rank 1 need be.
+        /// One plane with a push is found with its rank, whatever the ranks of its segments.
         #[test]
         fn a_movement_without_switch_is_whole(dim in 2usize..6, count in 30usize..100, seed in any::<u64>()) {
             let mut rng = ChaCha8Rng::seed_from_u64(seed);
@@ -81,7 +82,7 @@ mod tests {
             prop_assert_eq!(whole(&plane, dim - 1, 1e-4), Some(dim - 1));
         }
 
-        /// Two lines lie in one plane, which is not taken; nor are two planes in two dimensions.
+        /// Two lines lie in one plane, which is not accepted; neither are two planes in two dimensions.
         #[test]
         fn a_movement_with_a_switch_is_not(count in 20usize..60, seed in any::<u64>()) {
             let mut rng = ChaCha8Rng::seed_from_u64(seed);
@@ -93,7 +94,7 @@ mod tests {
             prop_assert_eq!(whole(&both.rows(0, 2).into_owned(), 1, 1e-4), None);
         }
 
-        /// (S23): at the least length the angle's standard deviation s/ℓ is the largest allowed.
+        /// (S23): at the least length, the angle's standard deviation s/ℓ has the maximum allowed value.
         #[test]
         fn the_least_length_is_that_of_the_largest_angle(count in 1usize..1000, deviation in 0.01f64..10.0) {
             let least = least_length(count, deviation * deviation);
@@ -105,8 +106,8 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(32))]
 
-        /// Of movements that jump by twenty standard deviations of the noise nearly all are found; hardly any of those that decay or turn, with
-        /// thirty samples a turn or more, or are noise alone.
+        /// Nearly all movements that jump by twenty standard deviations of the noise are found, and hardly any of those that decay, or turn
+        /// with at least thirty samples per turn, or are noise alone.
         #[test]
         fn jumps_are_found(
             dim in 2usize..5,

@@ -1,4 +1,5 @@
-//! Data sets of as many movements as wanted: planes at random angles, exchanged once in each movement, and noise on velocities.
+//! Data sets with any number of movements: constraint planes at random angles, with one switch in each movement, and noise on
+//! velocities.
 
 use gp::Rows;
 use motion::SampleIndex;
@@ -33,7 +34,8 @@ pub(crate) struct Set {
     pub(crate) fresh: (DMatrix<f64>, DMatrix<f64>),
 }
 
-/// So many movements of so many samples, with noise on velocities as a share of their root mean square, and twenty new ones.
+/// A set of `movements` with `samples` each, with noise on velocities as a share of their root mean square, and twenty new
+/// movements.
 pub(crate) fn set(gradient: Gradient, dim: usize, (movements, samples): (usize, usize), noise: f64, seed: u64) -> Set {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let fresh = record((gradient, dim), (20, samples), &mut rng);
@@ -51,7 +53,7 @@ pub(crate) fn set(gradient: Gradient, dim: usize, (movements, samples): (usize, 
     Set { rows, fresh: with_policy(gradient, &fresh.0) }
 }
 
-/// So many groups of twenty new movements: every fifth of 500 states, and the policy there, (n, 2000) each.
+/// Groups of twenty new movements: every fifth of 500 states, and the policy there, (n, 2000) each.
 pub(crate) fn new_movements(
     gradient: Gradient,
     dim: usize,

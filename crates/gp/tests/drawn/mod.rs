@@ -1,4 +1,4 @@
-//! Movements under constraints that are drawn, with their policies.
+//! Movements under random constraints, with their policies.
 pub(crate) mod many;
 pub(crate) mod movement;
 
@@ -20,23 +20,23 @@ pub(crate) fn matrix<R: Rng>(rows: usize, columns: usize, rng: &mut R) -> DMatri
     DMatrix::from_fn(rows, columns, |_, _| rng.random_range(-1.0..1.0))
 }
 
-/// Standard normal.
+/// A standard normal number.
 pub(crate) fn normal<R: Rng>(rng: &mut R) -> f64 {
     rng.sample(rand_distr::StandardNormal)
 }
 
-/// nUPE of a policy where the true one is known: states and its actions there, (n, Q) each.
+/// nUPE of a policy, given states and the true actions there, (n, Q) each.
 pub(crate) fn nupe(policy: &dyn Policy, (states, truth): &(DMatrix<f64>, DMatrix<f64>)) -> f64 {
     let learnt: Vec<DVector<f64>> = states.column_iter().map(|x| policy.action(x)).collect();
     metrics::nupe(truth, &DMatrix::from_columns(&learnt)).expect("a score")
 }
 
-/// Deepest points of three wells, of which systems of fewer dimensions take the first coordinates.
+/// Minima of three wells; systems of lower dimension take the first coordinates.
 pub(crate) const WELLS: [[f64; 6]; 3] =
     [[0.5, 0.3, -0.4, 0.2, 0.1, -0.5], [-0.6, 0.2, 0.3, -0.3, 0.4, 0.2], [0.1, -0.6, 0.2, 0.5, -0.4, 0.3]];
 
-/// Scattered rows: `per` samples of each trajectory, whose velocities are what one random constraint a sample leaves of
-/// the policy.
+/// Scattered rows: `per` samples of each trajectory. Each velocity is the policy projected by one random constraint per
+/// sample.
 pub(crate) fn rows<R: Rng>(
     dim: usize,
     (trajectories, per): (usize, usize),
@@ -57,7 +57,7 @@ pub(crate) fn rows<R: Rng>(
     Rows::new(states, velocities, indices).expect("finite rows")
 }
 
-/// −∇ of a smooth potential without symmetry.
+/// −∇ of a smooth asymmetric potential.
 pub(crate) fn descent(x: &DVector<f64>) -> DVector<f64> {
     DVector::from_fn(x.len(), |k, _| (x[k] + 0.3 * x[(k + 1) % x.len()]).cos() - 0.4 * x[k] + 0.2)
         + DVector::from_fn(x.len(), |k, _| {

@@ -1,8 +1,8 @@
-//! A movement of a policy under a constraint that may be exchanged on the way.
+//! A movement of a policy under a constraint that may switch on the way.
 
 use nalgebra::{DMatrix, DVector};
 
-/// A(x) u = b, A of k rows.
+/// A(x) u = b with k rows of A.
 pub(crate) enum Constraint {
     /// Orthonormal columns (n, k) that span the rows of A, and A⁺b (n).
     Fixed { basis: DMatrix<f64>, push: DVector<f64> },
@@ -11,12 +11,12 @@ pub(crate) enum Constraint {
 }
 
 impl Constraint {
-    /// None in n dimensions.
+    /// No constraint, in n dimensions.
     pub(crate) fn none(dim: usize) -> Self {
         Constraint::Fixed { basis: DMatrix::zeros(dim, 0), push: DVector::zeros(dim) }
     }
 
-    /// Nπ + A⁺b.
+    /// The velocity Nπ + A⁺b.
     pub(crate) fn velocity(&self, x: &DVector<f64>, policy: &DVector<f64>) -> DVector<f64> {
         let projected = |basis: &DMatrix<f64>, push: &DVector<f64>| policy - basis * basis.tr_mul(policy) + push;
         match self {
@@ -33,12 +33,12 @@ impl Constraint {
     }
 }
 
-/// How the next sample follows.
+/// The integration method from one sample to the next.
 #[derive(Clone, Copy)]
 pub(crate) enum Integration {
     /// One Euler step.
     Euler,
-    /// So many steps of the fourth order.
+    /// This number of fourth-order Runge-Kutta steps.
     RungeKutta(usize),
 }
 
@@ -52,7 +52,7 @@ pub(crate) struct Movement<'a> {
 }
 
 impl Movement<'_> {
-    /// State and velocity now; then goes on to the next sample.
+    /// Returns the present state and velocity, then advances to the next sample.
     pub(crate) fn sample(&mut self) -> (DVector<f64>, DVector<f64>) {
         let flow = |x: &DVector<f64>| self.constraint.velocity(x, &(self.policy)(x));
         let (x, u) = (self.state.clone(), flow(&self.state));

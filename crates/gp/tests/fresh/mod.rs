@@ -1,5 +1,5 @@
-//! Movements of a dozen potentials under random constraints that may press, and what is learnt of them on movements that
-//! were not shown.
+//! Movements of a dozen potentials under random constraints that may push, and errors of the learnt policies on new
+//! movements.
 mod potentials;
 
 use demo_gen::beyond::{BeyondSystem, PolicyKind};
@@ -14,33 +14,34 @@ use super::drawn;
 use super::drawn::movement::{Constraint, Integration, Movement};
 pub(crate) use potentials::{SYSTEMS, System};
 
-/// Movements shown, and others for the test; samples of each, their distance in seconds, and Runge-Kutta steps between.
+/// Number of movements learnt from, and of test movements; samples of each, their distance in seconds, and Runge-Kutta
+/// steps between them.
 const SHOWN: usize = 40;
 const FRESH: usize = 20;
 const SAMPLES: usize = 40;
 const TIME_STEP: f64 = 0.1;
 const SUB_STEPS: usize = 20;
-/// Samples after which a constraint is drawn anew.
+/// Number of samples after which a new constraint is drawn.
 const REDRAW: usize = 20;
 
-/// How a data set was disturbed.
+/// Disturbances of a data set.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Disturbed {
-    /// ‖A⁺b‖ over the root mean square of the policy.
+    /// ‖A⁺b‖ divided by the root mean square of the policy.
     pub(crate) press: f64,
-    /// Standard deviation of the velocities' noise along every axis, over the root mean square of the speed.
+    /// Standard deviation of the velocity noise along each axis, divided by the root mean square of the speed.
     pub(crate) noise: f64,
-    /// Whether the learner is told the noise's variance.
+    /// Whether the learner receives the noise variance.
     pub(crate) told: bool,
 }
 
-/// Rows of the movements shown, with states and policy of the others, (n, Q) each.
+/// Rows of the movements learnt from, with states and policy of the test movements, (n, Q) each.
 pub(crate) struct DataSet {
     pub(crate) rows: Rows,
     pub(crate) fresh: (DMatrix<f64>, DMatrix<f64>),
 }
 
-/// A constraint of one stretch of time, whose rows turn with the state.
+/// A constraint for one stretch of time, whose rows rotate with the state.
 fn constraint(system: &System, press: f64, rng: &mut ChaCha8Rng) -> Constraint {
     let (rank, dim) = (system.rank, system.dim);
     let drift = 0.25 / (dim as f64).sqrt() / (0.5 * system.half_width);
@@ -51,7 +52,7 @@ fn constraint(system: &System, press: f64, rng: &mut ChaCha8Rng) -> Constraint {
     Constraint::Turning { at_origin, drifts, press: direction * press }
 }
 
-/// Standard normal, by Box and Muller.
+/// A standard normal number, by Box and Muller.
 fn normal(rng: &mut ChaCha8Rng) -> f64 {
     let (a, b): (f64, f64) = (rng.random_range(f64::EPSILON..1.0), rng.random_range(0.0..std::f64::consts::TAU));
     (-2.0 * a.ln()).sqrt() * b.cos()
@@ -63,7 +64,7 @@ pub(crate) fn data_set(system: &System, disturbed: Disturbed, seed: u64) -> Data
     let start = |rng: &mut ChaCha8Rng| {
         DVector::from_fn(system.dim, |k, _| system.middle[k] + rng.random_range(-system.half_width..system.half_width))
     };
-    // A median speed that crosses 1.2 half widths in the time of a movement.
+    // Scales to a median speed that covers 1.2 half widths in the duration of a movement.
     let slopes: Vec<f64> = (0..200).map(|_| (system.gradient)(&start(rng)).norm()).collect();
     let median = motion::upper_median(slopes).expect("slopes");
     let factor = 1.2 * system.half_width / (median * TIME_STEP * SAMPLES as f64);
@@ -89,7 +90,7 @@ pub(crate) fn data_set(system: &System, disturbed: Disturbed, seed: u64) -> Data
         }
         (states, velocities)
     };
-    // The policy's size is that along the same movements without a press.
+    // The policy's size is computed along the same movements without a push.
     let (without, _) = record(0.0, &mut rng.clone());
     let rms = (without.iter().map(|x| policy(x).norm_squared()).sum::<f64>() / without.len() as f64).sqrt();
     let (states, mut velocities) = record(disturbed.press * rms, rng);
@@ -112,7 +113,7 @@ pub(crate) fn data_set(system: &System, disturbed: Disturbed, seed: u64) -> Data
     DataSet { rows, fresh: (DMatrix::from_columns(&fresh), actions(&fresh)) }
 }
 
-/// The same of a system of `demo_gen`: sixty movements shown, twenty not.
+/// The same for a system of `demo_gen`: sixty movements to learn from, twenty to test.
 pub(crate) fn beyond(policy: PolicyKind, disturbed: Disturbed, seed: u64) -> DataSet {
     assert_eq!(disturbed.press, 0.0, "these constraints do not press");
     let rng = &mut drawn::rng(seed);
@@ -134,9 +135,9 @@ pub(crate) fn beyond(policy: PolicyKind, disturbed: Disturbed, seed: u64) -> Dat
     DataSet { rows, fresh: (columns(states), columns(actions)) }
 }
 
-/// What was learnt, on movements that were not shown.
+/// The learnt policy's performance on new movements.
 pub(crate) struct Judged {
-    /// Σ‖π̂ − π‖² over Σ‖π − mean π‖².
+    /// Σ‖π̂ − π‖² divided by Σ‖π − mean π‖².
     pub(crate) nupe: f64,
     /// Shares of components within one and two error bars.
     pub(crate) covered: [f64; 2],

@@ -1,8 +1,8 @@
-//! Gradients of potentials that no family of the slope GP has in mind.
+//! Gradients of potentials that match no family of the slope GP.
 
 use nalgebra::{DMatrix, DVector};
 
-/// A potential with the cube of its starts; `rank` of a constraint.
+/// A potential with the cube of its starts; `rank` is that of a constraint.
 pub(crate) struct System {
     pub(crate) name: &'static str,
     pub(crate) dim: usize,
@@ -63,7 +63,7 @@ fn himmelblau(x: &DVector<f64>) -> DVector<f64> {
     of([4.0 * x[0] * p + 2.0 * q, 2.0 * p + 4.0 * x[1] * q])
 }
 
-/// Mueller and Brown's.
+/// Mueller and Brown's potential.
 fn mueller(x: &DVector<f64>) -> DVector<f64> {
     let terms = [
         (-2.0, -1.0, 0.0, -10.0, 1.0, 0.0),
@@ -134,7 +134,7 @@ fn log_cosh(x: &DVector<f64>) -> DVector<f64> {
     mixed.tr_mul(&bends) + x * 0.1
 }
 
-/// Three wells at fixed places of any dimension, in a bowl.
+/// Three wells at fixed places, in any dimension, in a bowl.
 fn wells(x: &DVector<f64>) -> DVector<f64> {
     let dim = x.len();
     let width = 0.55 * (dim as f64).sqrt();

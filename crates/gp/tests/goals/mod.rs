@@ -1,4 +1,4 @@
-//! Movements towards a goal that is new for each, past an obstacle that stays, under a constraint that is new for each and once within it.
+//! Movements towards a new goal each, past a fixed obstacle, under constraints that differ between movements and switch once within each.
 
 use motion::{Demonstrations, Trajectory};
 use nalgebra::{DMatrix, DVector};
@@ -8,7 +8,7 @@ use rand_chacha::ChaCha8Rng;
 const SAMPLES: usize = 40;
 const SPAN: f64 = 1.5;
 
-/// How a goal attracts.
+/// The attraction of a goal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Attraction {
     /// ½ |x − c|².
@@ -38,7 +38,7 @@ impl Goals {
         attracted + &from * (0.8 / OBSTACLE * (-from.norm_squared() / (2.0 * OBSTACLE * OBSTACLE)).exp())
     }
 
-    /// So many movements, their goals as contexts.
+    /// `count` movements, with their goals as contexts.
     pub(crate) fn movements(&self, count: usize, seed: u64) -> Demonstrations {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         let within = |rng: &mut ChaCha8Rng, span: f64| {

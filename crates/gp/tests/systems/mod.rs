@@ -1,4 +1,4 @@
-//! Potentials to descend under constraints A u = b, new for each movement and once within it.
+//! Potentials to descend under constraints A u = b, which differ between movements and switch once within each.
 use gp::{AutoFit, AutoGp, DirectGp, PushTest, Rows, SlopeGp};
 use motion::{Demonstrations, Policy, Trajectory};
 use nalgebra::{DMatrix, DVector};
@@ -16,9 +16,9 @@ const SAMPLES: usize = 40;
 pub(crate) struct System {
     pub(crate) dim: usize,
     span: f64,
-    /// Rows of A.
+    /// Number of rows of A.
     rank: usize,
-    /// Whether constraints are new once within each movement.
+    /// Whether the constraint switches once within each movement.
     switches: bool,
     potential: fn(&[f64]) -> f64,
 }
@@ -78,7 +78,7 @@ impl System {
         System { switches: false, ..self }
     }
 
-    /// −∇φ by central differences of order four.
+    /// −∇φ by central differences of fourth order.
     pub(crate) fn policy(&self, x: &DVector<f64>) -> DVector<f64> {
         let step = 1e-3 * self.span;
         DVector::from_fn(self.dim, |axis, _| {
@@ -91,7 +91,7 @@ impl System {
         })
     }
 
-    /// Root mean square of the policy on the whole box.
+    /// Root mean square of the policy over the whole box.
     pub(crate) fn rms(&self) -> f64 {
         let mut rng = ChaCha8Rng::seed_from_u64(99);
         let square = |_| self.policy(&self.start(&mut rng)).norm_squared();
@@ -102,18 +102,19 @@ impl System {
         DVector::from_fn(self.dim, |_, _| self.span * (2.0 * rng.random::<f64>() - 1.0))
     }
 
-    /// Movements under A u = b, A new for each and once within it, |A⁺b| = `push` of the root mean square of the policy.
+    /// Movements under A u = b, with a new A for each and a switch within it; |A⁺b| is `push` times the root mean square
+    /// of the policy.
     pub(crate) fn movements(&self, push: f64, noise: f64, seed: u64) -> Demonstrations {
         self.with_truth(push, noise, seed).0
     }
 
-    /// The same, with the constraints: of each movement the sample from which the second held, and the rows of both as
-    /// orthonormal columns.
+    /// Also returns the constraints: for each movement, the sample at which the second one began, and the rows of both
+    /// as orthonormal columns.
     pub(crate) fn with_truth(&self, push: f64, noise: f64, seed: u64) -> (Demonstrations, Vec<Switched>) {
         self.recorded((MOVEMENTS, SAMPLES), (push, noise), seed)
     }
 
-    /// So many movements of so many samples.
+    /// `count` movements of `samples` each.
     pub(crate) fn recorded(
         &self,
         (count, samples): (usize, usize),
@@ -154,12 +155,12 @@ impl System {
     }
 }
 
-/// What is learnt of 400 rows, where constraints may push.
+/// The fit of 400 rows with constraints that may push.
 pub(crate) fn learnt(rows: &Rows, seed: u64) -> AutoFit {
     learnt_with(0, rows, seed)
 }
 
-/// What is learnt of 400 rows, or of more through so many inducing rows; the program has 500.
+/// The fit of 400 rows, or of more through `inducing_rows` inducing rows; the program has 500.
 pub(crate) fn learnt_with(inducing_rows: usize, rows: &Rows, seed: u64) -> AutoFit {
     let (max_rows, hyper_rows) = (400, 200);
     let slope = SlopeGp { max_rows, hyper_rows, inducing_rows, push_test: PushTest::Fit, ..SlopeGp::default() };

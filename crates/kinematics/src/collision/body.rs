@@ -7,25 +7,26 @@ use super::{
 };
 use crate::{CollisionShape, KinematicsError, LinkId, LinkPoses};
 
-/// A link with everything it fills.
+/// A link with all its collision shapes.
 #[derive(Debug, Clone)]
 pub(super) struct Body {
     pub(super) link: LinkId,
     pub(super) solids: Vec<Solid>,
-    /// A sphere that holds all of it, in the link's frame.
+    /// A bounding sphere in the link's frame.
     centre: Point3<f64>,
     radius: f64,
 }
 
 #[derive(Debug, Clone)]
 pub(super) enum Solid {
-    /// Capsules and spheres, for which distances have a closed form; kept as a shape too, to meet the others.
+    /// Capsules and spheres, for which distances have a closed form; also kept as a library shape for
+    /// distances to other shapes.
     Round(Capsule, PlacedShape),
     Other(PlacedShape),
 }
 
 impl Body {
-    /// The body of one link's shapes; `mesh` says what a mesh becomes. `None` where nothing is left.
+    /// The body of one link's shapes; `mesh` converts a mesh. `None` if no shape is left.
     pub(super) fn new(
         link: LinkId,
         shapes: &[&CollisionShape],
@@ -50,7 +51,7 @@ impl Body {
         Some(Body { link, solids, centre, radius })
     }
 
-    /// No point of the two is nearer than this; may be negative.
+    /// A lower bound of the distance between the two bodies; may be negative.
     pub(super) fn distance_bound(&self, other: &Self, poses: &LinkPoses<'_>) -> f64 {
         let centre = |body: &Self| poses.transform_point(body.link, &body.centre);
         (centre(self) - centre(other)).norm() - self.radius - other.radius
@@ -78,7 +79,7 @@ impl Solid {
     }
 }
 
-/// A body's link in one configuration.
+/// The pose of a body's link in one configuration.
 pub(super) struct Placed<'a> {
     poses: &'a LinkPoses<'a>,
     link: LinkId,

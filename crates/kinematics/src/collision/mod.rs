@@ -1,6 +1,6 @@
-//! Self-collision: which links overlap ([`SelfCollision`]), from bodies of one link each (`body`), capsules (`round`)
-//! by closed form (`segment`), everything else by a library (`parry`); pairs left out by an SRDF (`srdf`); and which
-//! are near each other, and which way apart is (`nearby`).
+//! Self-collision: finds overlapping links ([`SelfCollision`]). There is one body per link (`body`). Capsules
+//! (`round`) have closed-form distances (`segment`); a library handles all other shapes (`parry`). An SRDF excludes
+//! pairs (`srdf`). `nearby` finds links near each other, and the direction that separates them.
 
 mod body;
 mod mesh;
@@ -22,29 +22,29 @@ use crate::{CollisionShape, Geometry, KinematicsError, LinkId, LinkPoses, RobotM
 
 /// The collision shapes of one robot, and the pairs of links that must not touch.
 ///
-/// Left out from the start: links that cannot move against each other (joined by fixed joints), and links joined by
-/// one moving joint. Links without shapes do not count as something in between: a hand and a forearm with a wrist of
-/// three axes between them are a pair, until [`SelfCollision::disable`] or an SRDF says otherwise.
+/// Excluded from the start are links that cannot move relative to each other (joined by fixed joints), and links
+/// joined by one moving joint. Links without shapes do not change this: a hand and a forearm with a wrist of three
+/// axes between them are a pair, unless [`SelfCollision::disable`] or an SRDF excludes it.
 #[derive(Debug, Clone)]
 pub struct SelfCollision {
     links: Arc<[String]>,
     bodies: Vec<Body>,
-    /// Places in `bodies`, the first smaller than the second.
+    /// Indices into `bodies`, the first smaller than the second.
     pairs: Vec<(usize, usize)>,
 }
 
-/// The narrowest place between two links that must not touch.
+/// The smallest distance between two links that must not touch.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Clearance {
-    /// The distance in metres; 0 where the links touch or overlap.
+    /// The distance in metres; 0 if the links touch or overlap.
     pub distance: f64,
     /// The two links.
     pub links: (LinkId, LinkId),
 }
 
 impl SelfCollision {
-    /// Takes the robot's collision shapes. `meshes` is asked once for each mesh, by the file name in the URDF; what it
-    /// does not know is an error, what should not count is [`MeshShape::LeftOut`].
+    /// Takes the robot's collision shapes. `meshes` is called once for each mesh, with the file name in the URDF. A
+    /// mesh for which it returns `None` is an error; a mesh to be excluded is [`MeshShape::LeftOut`].
     ///
     /// # Errors
     /// [`KinematicsError::Urdf`] for a faulty `<collision>`, [`KinematicsError::MissingMeshes`] with all that are
@@ -65,7 +65,7 @@ impl SelfCollision {
         Ok(SelfCollision { links: Arc::clone(&robot.links), bodies, pairs })
     }
 
-    /// Lets two links overlap.
+    /// Allows two links to overlap.
     ///
     /// # Errors
     /// [`KinematicsError::UnknownLink`].
@@ -76,12 +76,12 @@ impl SelfCollision {
         Ok(())
     }
 
-    /// Lets all pairs overlap that the text of an SRDF names in `disable_collisions`; everything else in it is passed
-    /// over.
+    /// Allows all pairs to overlap that the text of an SRDF lists in `disable_collisions`; everything else in it is
+    /// ignored.
     ///
     /// # Errors
-    /// [`KinematicsError::NotXml`], [`KinematicsError::Urdf`] or [`KinematicsError::UnknownLink`]; no pair is let
-    /// overlap then.
+    /// [`KinematicsError::NotXml`], [`KinematicsError::Urdf`] or [`KinematicsError::UnknownLink`]; then no pair is
+    /// excluded.
     pub fn disable_srdf(&mut self, text: &str) -> Result<(), KinematicsError> {
         let disabled = srdf::disabled_pairs(text, &self.links)?;
         self.pairs.retain(|&(a, b)| !disabled.contains(&(self.bodies[a].link, self.bodies[b].link)));
@@ -93,7 +93,7 @@ impl SelfCollision {
         self.pairs.iter().map(|&(a, b)| (self.bodies[a].link, self.bodies[b].link))
     }
 
-    /// Whether any pair touches. Allocates nothing. `poses` are of the robot that this was made for.
+    /// Whether any pair touches. Does not allocate. `poses` must be those of the robot for which this was built.
     pub fn collides(&self, poses: &LinkPoses<'_>) -> bool {
         self.pairs.iter().any(|&(a, b)| self.bodies[a].touches(&self.bodies[b], poses))
     }
@@ -104,7 +104,7 @@ impl SelfCollision {
         touching.map(|&(a, b)| (self.bodies[a].link, self.bodies[b].link)).collect()
     }
 
-    /// The narrowest place; `None` where no pair is left.
+    /// The smallest clearance; `None` if no pair is left.
     pub fn clearance(&self, poses: &LinkPoses<'_>) -> Option<Clearance> {
         let mut narrowest: Option<Clearance> = None;
         for &(a, b) in &self.pairs {
@@ -120,8 +120,8 @@ impl SelfCollision {
         narrowest
     }
 
-    /// All pairs that touch while every coordinate is 0: as a rule links that overlap by construction and belong on
-    /// the list of an SRDF.
+    /// All pairs that touch when every coordinate is 0: usually links that overlap by design and belong in an SRDF's
+    /// list.
     pub fn colliding_at_zero(&self, robot: &RobotModel) -> Vec<(LinkId, LinkId)> {
         let mut workspace = Workspace::new();
         let zero = DVector::zeros(robot.n_joints());
@@ -130,7 +130,7 @@ impl SelfCollision {
     }
 }
 
-/// The shape of a mesh; one that is not there is noted.
+/// The shape of a mesh; a missing mesh is recorded.
 fn resolved(
     robot: &RobotModel,
     shape: &CollisionShape,
@@ -149,7 +149,7 @@ fn resolved(
 
 /// All pairs of bodies that can move against each other and are not joined by one joint.
 fn free_pairs(robot: &RobotModel, bodies: &[Body]) -> Vec<(usize, usize)> {
-    // Every link's group: the uppermost link that it is fixed to.
+    // The group of every link: the topmost link to which it is fixed.
     let mut groups: Vec<usize> = (0..robot.nodes.len()).collect();
     for (index, node) in robot.nodes.iter().enumerate().skip(1) {
         if node.coupling.is_none() {

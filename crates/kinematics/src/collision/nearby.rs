@@ -7,24 +7,24 @@ use super::{
 };
 use crate::{LinkId, LinkPoses};
 
-/// Two links that must not touch and are near each other: where, how far apart, and which way apart is.
+/// Two links that must not touch and are near each other: where, how far apart, and the direction that separates them.
 ///
 /// Shapes other than meshes are solid; their distances are exact to 5e-5 m.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Nearby {
     /// The two links.
     pub links: (LinkId, LinkId),
-    /// Their distance in metres; where they overlap, minus the way on which one would leave the other soonest.
+    /// Their distance in metres; if they overlap, minus the shortest displacement that separates them.
     pub distance: f64,
-    /// The points of the two that are nearest to each other (or deepest inside), in the root link's frame, metres.
+    /// Their points nearest to each other (or deepest inside), in the root link's frame, metres.
     pub points: (Point3<f64>, Point3<f64>),
-    /// The way on which the second link goes away from the first, in root axes.
+    /// The direction in which the second link moves away from the first, in root axes.
     pub normal: UnitVector3<f64>,
 }
 
 impl Nearby {
-    /// How the distance changes with each coordinate, (n), in metres per unit of that joint: nᵀ(J₂ − J₁) with the
-    /// Jacobians of the two points. `poses` are those in which the two were found.
+    /// Gradient of the distance with respect to the coordinates, (n), in metres per unit of each joint: nᵀ(J₂ − J₁) with
+    /// the Jacobians of the two points. `poses` are those for which the pair was found.
     pub fn gradient(&self, poses: &LinkPoses<'_>) -> DVector<f64> {
         let n = poses.robot().n_joints();
         let [mut first, mut second] = [Matrix3xX::zeros(n), Matrix3xX::zeros(n)];
@@ -35,11 +35,12 @@ impl Nearby {
 }
 
 impl SelfCollision {
-    /// All pairs of links nearer to each other than `within` (metres), overlapping ones included; each pair at its
-    /// narrowest place.
+    /// All pairs of links nearer to each other than `within` (metres), including overlapping ones; each pair at its
+    /// smallest distance.
     ///
-    /// A gradient for what keeps links apart: unlike [`SelfCollision::clearance`] it goes on below 0, and says which way
-    /// out is. A pair for which the collision library finds no way out is missing.
+    /// Provides a gradient for controllers that keep links apart: unlike [`SelfCollision::clearance`] it continues below
+    /// 0 and includes the separating direction. Pairs for which the collision library finds no separating direction are
+    /// omitted.
     pub fn nearby(&self, poses: &LinkPoses<'_>, within: f64) -> Vec<Nearby> {
         let pairs = self.pairs.iter().map(|&(a, b)| (&self.bodies[a], &self.bodies[b]));
         pairs.filter_map(|(a, b)| a.nearby(b, poses, within)).collect()

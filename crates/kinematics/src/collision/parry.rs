@@ -1,4 +1,4 @@
-//! The only place that knows the collision library, and its vector types.
+//! The only module that uses the collision library and its vector types.
 
 use nalgebra::{IsometryMatrix3, Point3, UnitQuaternion, UnitVector3, Vector3};
 use parry3d_f64::{
@@ -25,14 +25,14 @@ impl std::fmt::Debug for PlacedShape {
 }
 
 impl PlacedShape {
-    /// A shape that is no mesh.
+    /// A shape other than a mesh.
     pub(super) fn primitive(geometry: &Geometry, origin: &IsometryMatrix3<f64>) -> Option<Self> {
         let pose = pose(origin);
         let shape = match *geometry {
             Geometry::Box { size } => SharedShape::cuboid(size.x / 2.0, size.y / 2.0, size.z / 2.0),
             Geometry::Sphere { radius } => SharedShape::ball(radius),
             Geometry::Capsule { radius, length } => SharedShape::capsule_z(length / 2.0, radius),
-            // A cylinder is along y there and along z here.
+            // A cylinder's axis is y in the library and z here.
             Geometry::Cylinder { radius, length } => {
                 let upright = Pose::from_parts(Vector::ZERO, DQuat::from_rotation_x(std::f64::consts::FRAC_PI_2));
                 return Some(PlacedShape { shape: SharedShape::cylinder(length / 2.0, radius), pose: pose * upright });
@@ -42,7 +42,7 @@ impl PlacedShape {
         Some(PlacedShape { shape, pose })
     }
 
-    /// A mesh, or why it is none.
+    /// A mesh, or the reason why it is not a shape.
     pub(super) fn mesh(
         mesh: MeshShape,
         scale: &Vector3<f64>,
@@ -50,7 +50,7 @@ impl PlacedShape {
     ) -> Result<Option<Self>, String> {
         let scaled = |vertices: Vec<Point3<f64>>| -> Result<Vec<Vector>, String> {
             let scaled = vertices.into_iter().map(|vertex| vertex.coords.component_mul(scale));
-            // Written so that NaN is refused too; far beyond, the collision library fails on overflows of its own.
+            // The condition also rejects NaN. The collision library itself overflows at much larger values.
             let near = |v: Vector3<f64>| v.iter().all(|part| part.abs() <= LARGEST).then(|| Vector::new(v.x, v.y, v.z));
             scaled.map(near).collect::<Option<_>>().ok_or_else(|| "a vertex is not finite, or beyond 1e6 m".to_owned())
         };
@@ -69,7 +69,7 @@ impl PlacedShape {
         Ok(Some(PlacedShape { shape, pose: pose(origin) }))
     }
 
-    /// A sphere in the link's frame that holds the shape.
+    /// A bounding sphere in the link's frame.
     pub(super) fn bounding_sphere(&self) -> (Point3<f64>, f64) {
         let sphere = self.shape.compute_bounding_sphere(&self.pose);
         let Vector { x, y, z } = sphere.center();
@@ -77,7 +77,7 @@ impl PlacedShape {
     }
 }
 
-/// Two shapes, each with its link's pose: whether they touch.
+/// Whether two shapes touch, each with its link's pose.
 pub(super) fn touch(first: (&PlacedShape, &LinkPose), second: (&PlacedShape, &LinkPose)) -> bool {
     let ((a, at_a), (b, at_b)) = (first, second);
     query::intersection_test(&(at_a.0 * a.pose), &*a.shape, &(at_b.0 * b.pose), &*b.shape)
@@ -85,7 +85,7 @@ pub(super) fn touch(first: (&PlacedShape, &LinkPose), second: (&PlacedShape, &Li
         .intersecting
 }
 
-/// Two shapes, each with its link's pose: their distance in metres, 0 where they touch.
+/// The distance of two shapes in metres, each with its link's pose; 0 if they touch.
 pub(super) fn distance(first: (&PlacedShape, &LinkPose), second: (&PlacedShape, &LinkPose)) -> f64 {
     let ((a, at_a), (b, at_b)) = (first, second);
     query::distance(&(at_a.0 * a.pose), &*a.shape, &(at_b.0 * b.pose), &*b.shape)
@@ -93,17 +93,17 @@ pub(super) fn distance(first: (&PlacedShape, &LinkPose), second: (&PlacedShape, 
         .distance
 }
 
-/// The narrowest place between two shapes, or the deepest.
+/// The points of smallest distance, or deepest penetration, of two shapes.
 pub(super) struct Contact {
-    /// Negative where they overlap.
+    /// Negative if they overlap.
     pub(super) distance: f64,
     pub(super) points: (Point3<f64>, Point3<f64>),
-    /// From the first to the second.
+    /// Direction from the first to the second.
     pub(super) normal: UnitVector3<f64>,
 }
 
-/// Two shapes, each with its link's pose, that are nearer than `within` metres; `None` where the library finds no way
-/// out of an overlap.
+/// The contact of two shapes, each with its link's pose, that are nearer than `within` metres. `None` if they are
+/// not, or if the library finds no way out of an overlap.
 pub(super) fn contact(
     first: (&PlacedShape, &LinkPose),
     second: (&PlacedShape, &LinkPose),

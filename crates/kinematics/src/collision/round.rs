@@ -5,11 +5,11 @@ use nalgebra::Point3;
 use super::segment::Capsule;
 use crate::{CollisionShape, Geometry};
 
-/// Ends of cylinders and centres of spheres this close are one point, metres.
+/// Cylinder ends and sphere centres within this distance, in metres, coincide.
 const SAME_POINT: f64 = 1e-9;
 
-/// The shapes, with each cylinder between two spheres of its own radius written as the capsule it is: fewer shapes, and
-/// a closed form for their distances.
+/// The shapes, with each cylinder between two spheres of equal radius replaced by a capsule: fewer shapes, and
+/// distances in closed form.
 pub(super) fn whole_capsules(shapes: &[&CollisionShape]) -> Vec<CollisionShape> {
     let mut shapes: Vec<CollisionShape> = shapes.iter().map(|&shape| shape.clone()).collect();
     while let Some((cylinder, caps)) = (0..shapes.len()).find_map(|at| Some((at, caps(&shapes, at)?))) {
@@ -22,7 +22,7 @@ pub(super) fn whole_capsules(shapes: &[&CollisionShape]) -> Vec<CollisionShape> 
     shapes
 }
 
-/// The places of the two spheres that round a cylinder's ends.
+/// Indices of the two spheres that round a cylinder's ends.
 fn caps(shapes: &[CollisionShape], cylinder: usize) -> Option<[usize; 2]> {
     let Geometry::Cylinder { radius, length } = shapes[cylinder].geometry else { return None };
     let cap = |end| shapes.iter().position(|shape| is_sphere(shape, end, radius));
@@ -35,7 +35,7 @@ fn is_sphere(shape: &CollisionShape, centre: Point3<f64>, of_radius: f64) -> boo
     matches!(shape.geometry, Geometry::Sphere { radius } if (radius - of_radius).abs() <= SAME_POINT) && at_centre
 }
 
-/// The capsule that a capsule or sphere is, in the link's frame.
+/// A capsule or sphere as a [`Capsule`] in the link's frame.
 pub(super) fn as_capsule(shape: &CollisionShape) -> Option<Capsule> {
     match shape.geometry {
         Geometry::Capsule { radius, length } => Some(Capsule { ends: ends(shape, length), radius }),

@@ -1,6 +1,7 @@
 use nalgebra::{Point3, Vector3};
 
-/// A capsule: all points within `radius` of the segment from `ends[0]` to `ends[1]`. A sphere is one without length.
+/// A capsule: all points within `radius` of the segment from `ends[0]` to `ends[1]`. A sphere is a capsule without
+/// length.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Capsule {
     pub(super) ends: [Point3<f64>; 2],
@@ -8,16 +9,16 @@ pub(super) struct Capsule {
 }
 
 impl Capsule {
-    /// Distance between two surfaces; negative by as much as the skins overlap, down to minus the sum of the radii
-    /// where the axes touch.
+    /// Distance between the two surfaces; negative if they overlap, down to minus the sum of the radii if the axes
+    /// touch.
     pub(super) fn distance(&self, other: &Self) -> f64 {
         segment_distance(self.ends, other.ends) - self.radius - other.radius
     }
 }
 
-/// The distance between two segments: the least of the distances of the four ends to the other segment, and of the
-/// common perpendicular where its feet lie inside both. Every candidate is a distance of two points of the segments,
-/// so that rounding, at parallel segments above all, never gives less than the truth.
+/// The distance between two segments: the smallest of the distances of the four ends to the other segment and, if its
+/// feet lie inside both, the common perpendicular. Every candidate is a distance between two points of the segments,
+/// so that rounding, above all for parallel segments, never gives less than the true distance.
 fn segment_distance([a, b]: [Point3<f64>; 2], [c, d]: [Point3<f64>; 2]) -> f64 {
     let (u, v, w) = (b - a, d - c, a - c);
     let ends = [to_segment(a, c, v), to_segment(b, c, v), to_segment(c, a, u), to_segment(d, a, u)];
@@ -29,7 +30,7 @@ fn segment_distance([a, b]: [Point3<f64>; 2], [c, d]: [Point3<f64>; 2]) -> f64 {
     if inside { nearest.min((w + u * s - v * t).norm()) } else { nearest }
 }
 
-/// The distance from a point to the segment that leads from `start` along `along`.
+/// The distance from a point to the segment with vector `along` from `start`.
 fn to_segment(point: Point3<f64>, start: Point3<f64>, along: Vector3<f64>) -> f64 {
     let offset = point - start;
     let length = along.norm_squared();
@@ -47,8 +48,8 @@ mod tests {
         [-1.0..1.0, -1.0..1.0, -1.0..1.0_f64].prop_map(Point3::from)
     }
 
-    /// Distance at the parts s, t of the two segments, minimised over t for every s by the closed form, and over s by
-    /// golden sections: the distance is convex.
+    /// The distance between the points at the parameters s, t of the two segments, minimised over t for every s in
+    /// closed form, and over s by golden-section search: the distance is convex.
     fn by_search([a, b]: [Point3<f64>; 2], [c, d]: [Point3<f64>; 2]) -> f64 {
         let at = |s: f64| to_segment(a + (b - a) * s, c, d - c);
         let (mut low, mut high) = (0.0, 1.0);

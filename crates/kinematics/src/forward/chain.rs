@@ -14,9 +14,9 @@ use crate::{
     nodes::{Coupling, Motion, Node, Placement},
 };
 
-/// The joints between the root and one link, and nothing else: the cheap way to one hand. Fixed joints are folded
-/// into the joints after them. Configurations and Jacobians keep the size of the whole robot; columns of joints off
-/// the chain are zero.
+/// The joints between the root and one link only: the cheap way to compute one hand. Fixed joints are merged into the
+/// joints after them. Configurations and Jacobians keep the size of the whole robot; columns of joints off the chain
+/// are zero.
 #[derive(Debug, Clone)]
 pub struct Chain {
     pub(super) joints: Arc<[Joint]>,
@@ -66,7 +66,7 @@ impl Chain {
     }
 
     /// Writes the geometric Jacobian (6, n) of the link's frame, rows vx vy vz wx wy wz at the frame's origin in root
-    /// axes, and gives the link's pose. `q` (n) is a configuration of the whole robot.
+    /// axes, and returns the link's pose. `q` (n) is a configuration of the whole robot.
     ///
     /// # Errors
     /// [`KinematicsError::ConfigurationLength`], [`KinematicsError::NotFinite`], [`KinematicsError::TooFar`] or
@@ -83,7 +83,7 @@ impl Chain {
     }
 
     /// Writes the upper three rows (3, n) of [`Chain::jacobian`], vx vy vz of the frame's origin in root axes, and
-    /// gives that origin. `q` (n) is a configuration of the whole robot.
+    /// returns that origin. `q` (n) is a configuration of the whole robot.
     ///
     /// # Errors
     /// [`KinematicsError::ConfigurationLength`], [`KinematicsError::NotFinite`], [`KinematicsError::TooFar`] or
@@ -106,7 +106,7 @@ impl Chain {
     }
 }
 
-/// Places the chain and fills a Jacobian, compiled for the machine it runs on.
+/// Places the chain and fills a Jacobian, compiled for the processor at hand.
 struct Fill<'a, const ROWS: usize> {
     chain: &'a Chain,
     q: &'a [f64],

@@ -10,11 +10,11 @@ use super::{
 use crate::{KinematicsError, model::all_placeable};
 
 impl Chain {
-    /// The link's pose in the root link's frame, metres, in each of the configurations `q` (n, N) of the whole robot: what
-    /// [`Chain::pose`] finds in each, bit for bit, several at once in vector registers.
+    /// The link's pose in the root link's frame, metres, in each of the configurations `q` (n, N) of the whole robot. The
+    /// results equal those of [`Chain::pose`] bit for bit, but several are computed at once in vector registers.
     ///
     /// # Errors
-    /// [`KinematicsError::InBatch`] with what [`Chain::pose`] says of the first configuration at fault.
+    /// [`KinematicsError::InBatch`] with the error of [`Chain::pose`] for the first faulty configuration.
     pub fn poses<'w>(
         &self,
         q: DMatrixView<'_, f64>,
@@ -24,8 +24,8 @@ impl Chain {
         Ok(self.evaluate(q, workspace, None))
     }
 
-    /// Writes the geometric Jacobians of the link's frame side by side, (6, n·N): columns i·n to (i + 1)·n are what
-    /// [`Chain::jacobian`] writes in configuration i of `q` (n, N), bit for bit. Gives the link's poses.
+    /// Writes the geometric Jacobians of the link's frame side by side, (6, n·N): columns i·n to (i + 1)·n equal, bit for
+    /// bit, the result of [`Chain::jacobian`] in configuration i of `q` (n, N). Returns the link's poses.
     ///
     /// # Errors
     /// [`KinematicsError::InBatch`] as [`Chain::poses`], or [`KinematicsError::BatchColumns`].
@@ -54,7 +54,7 @@ impl Chain {
     }
 }
 
-/// Places the chain in all configurations and fills Jacobians if there are any, compiled for the machine it runs on.
+/// Places the chain in all configurations and fills the Jacobians, if any, compiled for the processor at hand.
 struct Evaluate<'a, 'q> {
     chain: &'a Chain,
     q: DMatrixView<'q, f64>,
@@ -96,7 +96,7 @@ mod tests {
     use super::*;
     use crate::forward::upper_body;
 
-    /// Registers of every width, and none, give the same bits.
+    /// Vector registers of every width, and scalar code, give the same bits.
     #[test]
     fn dispatch_changes_no_bit() {
         let robot = upper_body();

@@ -1,5 +1,5 @@
-//! As many configurations at once as there are lanes: a lane holds one of them. Operations and their order are those of
-//! a single configuration, and so are the bits.
+//! Processes as many configurations at once as there are lanes, one per lane. Operations and their order are those for a single
+//! configuration, and so the results agree bit for bit.
 
 use lanes::{LANES, Lanes, Register, sin_cos_all};
 use nalgebra::DMatrixView;
@@ -8,14 +8,14 @@ use pulp::Simd;
 use super::{Workspace, jacobian::column_of};
 use crate::nodes::{Coupling, Node, Placement, PlacementGroup, Position};
 
-/// The configurations (n) from column `first` on, one for each lane; the last one again where there are no more.
+/// The configurations (n) from column `first` on, one for each lane; the last one is repeated if there are too few.
 #[inline(always)]
 pub(super) fn lanes_from<'q>(q: &'q DMatrixView<'_, f64>, first: usize) -> [&'q [f64]; LANES] {
     std::array::from_fn(|lane| q.column((first + lane).min(q.ncols() - 1)).data.into_slice())
 }
 
 impl Workspace {
-    /// Makes room for groups of configurations.
+    /// Allocates memory for groups of configurations.
     pub(super) fn fit_groups(&mut self, n_nodes: usize, n_couplings: usize, n_groups: usize) {
         for lanes in [&mut self.values, &mut self.sines, &mut self.cosines] {
             lanes.resize(n_couplings, Lanes::default());
@@ -63,8 +63,8 @@ impl Workspace {
     }
 }
 
-/// Adds a joint's columns to the Jacobians (6, n) of a group, as `add_column` does to one, for a frame with its origin at that of
-/// `tip`. Lanes beyond the Jacobians are left out.
+/// Adds a joint's columns to the Jacobians (6, n) of a group, as `add_column` does to one, for a frame whose origin is that of
+/// `tip`. Lanes beyond the Jacobians are ignored.
 #[inline(always)]
 pub(super) fn add_columns<S: Simd>(
     simd: S,

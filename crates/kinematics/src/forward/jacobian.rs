@@ -1,5 +1,5 @@
-//! The geometric Jacobian, column by column: a turning joint moves the frame's origin by axis × lever and turns it
-//! about the axis; a sliding joint moves it along the axis.
+//! The geometric Jacobian, column by column: a rotating joint moves the frame's origin by axis × lever and rotates the frame about
+//! the axis; a sliding joint moves it along the axis.
 
 use lanes::Number;
 
@@ -8,7 +8,7 @@ use crate::{
     nodes::{Coupling, Motion, Node, Padded, Placement, cross},
 };
 
-/// Linear and angular velocity that a joint of a node gives to a frame with its origin at `tip`, in root axes, per unit of the joint.
+/// Linear and angular velocity of a frame with its origin at `tip`, in root axes, per unit of a node's joint.
 #[inline(always)]
 pub(crate) fn column_of<T: Number, const W: usize>(
     node: &Node,
@@ -26,8 +26,8 @@ pub(crate) fn column_of<T: Number, const W: usize>(
     [cross(axis, lever), axis]
 }
 
-/// Adds a joint's column, for a frame with its origin at `tip`; 3 rows are vx vy vz, 6 rows vx vy vz wx wy wz. Joints
-/// that follow one another share a column, therefore "adds".
+/// Adds a joint's column, for a frame with its origin at `tip`; 3 rows are vx vy vz, 6 rows vx vy vz wx wy wz. It adds because a
+/// joint and its mimic joints share a column.
 #[inline(always)]
 pub(crate) fn add_column<const ROWS: usize>(
     node: &Node,
@@ -48,13 +48,13 @@ pub(crate) fn add_column<const ROWS: usize>(
     }
 }
 
-/// A Jacobian to be filled has one column for each joint.
+/// Checks that a Jacobian has one column for each joint.
 pub(crate) fn require_columns(found: usize, joints: &[Joint]) -> Result<(), KinematicsError> {
     let expected = joints.len();
     if found == expected { Ok(()) } else { Err(KinematicsError::JacobianColumns { found, expected }) }
 }
 
-/// Jacobians to be filled side by side have one column for each joint in each configuration.
+/// Checks that Jacobians side by side have one column for each joint in each configuration.
 pub(crate) fn require_columns_each(
     found: usize,
     configurations: usize,

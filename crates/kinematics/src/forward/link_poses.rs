@@ -52,7 +52,7 @@ impl LinkPoses<'_> {
         self.placements[link.0].position()
     }
 
-    /// A point given in the link's frame, in the root link's frame, metres.
+    /// A point in the link's frame, converted to the root link's frame, metres.
     pub fn transform_point(&self, link: LinkId, point: &Point3<f64>) -> Point3<f64> {
         self.placements[link.0].translated(padded(&point.coords)).position()
     }
@@ -88,14 +88,14 @@ impl LinkPoses<'_> {
         self.fill_at::<ROWS>(link, &self.position(link), jacobian);
     }
 
-    /// Fills the Jacobian (ROWS, n) of a point that moves with a link, given in the root link's frame.
+    /// Fills the Jacobian (ROWS, n) of a point that is fixed to a link and given in the root link's frame.
     pub(crate) fn fill_at<const ROWS: usize>(&self, link: LinkId, tip: &Point3<f64>, jacobian: &mut [f64]) {
         let (columns, _) = jacobian.as_chunks_mut::<ROWS>();
         dispatch_avx2(Fill { poses: self, link, tip: padded(&tip.coords), columns });
     }
 }
 
-/// Fills a Jacobian, compiled for the machine it runs on.
+/// Fills a Jacobian, compiled for the processor at hand.
 struct Fill<'a, const ROWS: usize> {
     poses: &'a LinkPoses<'a>,
     link: LinkId,

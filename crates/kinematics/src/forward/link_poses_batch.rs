@@ -17,19 +17,19 @@ use crate::{
 #[derive(Debug, Clone, Copy)]
 pub struct LinkPosesBatch<'a> {
     robot: &'a RobotModel,
-    /// Of all nodes in the first group of configurations, then in the next.
+    /// Placements of all nodes, group after group of configurations.
     groups: &'a [PlacementGroup],
     len: usize,
 }
 
 impl RobotModel {
-    /// Places all links in each of the configurations `q` (n, N), radians or metres: what
-    /// [`RobotModel::forward_kinematics`] finds in each, bit for bit, several at once in vector registers. A multiple of
-    /// eight costs least. Each configuration takes 96 bytes of the workspace a link, so that some dozens at a time, which
+    /// Places all links in each of the configurations `q` (n, N), radians or metres. The results equal those of
+    /// [`RobotModel::forward_kinematics`] bit for bit, but several are computed at once in vector registers. A multiple of
+    /// eight is most efficient. Each configuration takes 96 bytes of the workspace per link; some dozens at a time, which
     /// fit into the processor's cache, are faster than thousands.
     ///
     /// # Errors
-    /// [`KinematicsError::InBatch`] with what [`RobotModel::forward_kinematics`] says of the first configuration at fault.
+    /// [`KinematicsError::InBatch`] with the error of [`RobotModel::forward_kinematics`] for the first faulty configuration.
     pub fn forward_kinematics_batch<'a>(
         &'a self,
         q: DMatrixView<'_, f64>,
@@ -48,7 +48,7 @@ impl LinkPosesBatch<'_> {
         self.len
     }
 
-    /// Whether there is none.
+    /// Whether there are no configurations.
     pub fn is_empty(&self) -> bool {
         self.len == 0
     }
@@ -69,8 +69,8 @@ impl LinkPosesBatch<'_> {
         self.placement(link, index).position()
     }
 
-    /// Writes the geometric Jacobians of the link's frame side by side, (6, n·N): columns i·n to (i + 1)·n are what
-    /// [`LinkPoses::jacobian`](crate::LinkPoses::jacobian) writes in configuration i, bit for bit.
+    /// Writes the geometric Jacobians of the link's frame side by side, (6, n·N): columns i·n to (i + 1)·n equal, bit for
+    /// bit, the result of [`LinkPoses::jacobian`](crate::LinkPoses::jacobian) in configuration i.
     ///
     /// # Errors
     /// [`KinematicsError::BatchColumns`].
@@ -97,7 +97,7 @@ impl LinkPosesBatch<'_> {
     }
 }
 
-/// Places all links in all configurations, compiled for the machine it runs on.
+/// Places all links in all configurations, compiled for the processor at hand.
 struct PlaceAll<'a, 'q> {
     robot: &'a RobotModel,
     q: DMatrixView<'q, f64>,
@@ -116,7 +116,7 @@ impl WithSimd for PlaceAll<'_, '_> {
     }
 }
 
-/// Fills the Jacobians, compiled for the machine it runs on.
+/// Fills the Jacobians, compiled for the processor at hand.
 struct Fill<'a> {
     poses: &'a LinkPosesBatch<'a>,
     link: LinkId,

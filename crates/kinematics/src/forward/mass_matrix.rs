@@ -4,9 +4,9 @@ use super::LinkPoses;
 use crate::KinematicsError;
 
 impl LinkPoses<'_> {
-    /// The mass matrix M(q) = Σ m J_vᵀJ_v + J_ωᵀRIRᵀJ_ω over links, (n, n): half q̇ᵀMq̇ is the kinetic energy. J_v and J_ω are
-    /// Jacobians of a link's centre of mass; in kg m², kg m and kg, as the joints turn or slide. Takes time with the number of links
-    /// times n².
+    /// The mass matrix M(q) = Σ m J_vᵀJ_v + J_ωᵀRIRᵀJ_ω over links, (n, n); the kinetic energy is half q̇ᵀMq̇. J_v and J_ω are
+    /// Jacobians of a link's centre of mass. The units are kg m², kg m and kg, depending on whether the joints rotate or slide. The
+    /// time grows with the number of links times n².
     ///
     /// # Errors
     /// As [`RobotModel::inertials`](crate::RobotModel::inertials).

@@ -1,6 +1,6 @@
-//! Where links are and how they move: all of a robot's ([`LinkPoses`]), or one by the joints that lead to it ([`Chain`]), in
-//! one configuration or several at once (`group`); the mass matrix and momenta; columns of Jacobians (`jacobian`); the memory
-//! for it ([`Workspace`]).
+//! Poses and velocities of links: of all links of a robot ([`LinkPoses`]), or of one by the joints that lead to it
+//! ([`Chain`]), in one configuration or several at once (`group`); the mass matrix and momenta; columns of Jacobians
+//! (`jacobian`); the memory that they use ([`Workspace`]).
 
 mod chain;
 mod chain_batch;
@@ -17,7 +17,7 @@ pub use link_poses::LinkPoses;
 pub use link_poses_batch::LinkPosesBatch;
 pub use workspace::Workspace;
 
-/// A robot of many joints, to try registers on.
+/// A robot with many joints, for tests of vector registers.
 #[cfg(test)]
 fn upper_body() -> crate::RobotModel {
     crate::RobotModel::from_urdf(include_str!("../../../../robots/asimo_upper_body.urdf"))

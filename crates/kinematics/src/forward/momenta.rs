@@ -6,9 +6,9 @@ use super::{LinkPosesBatch, group::lanes_from, jacobian::column_of};
 use crate::{Inertial, KinematicsError, RobotModel, nodes::PlacementGroup};
 
 impl LinkPosesBatch<'_> {
-    /// Generalised momenta M(q)u, (n, N), of joint velocities u (n, N): to rounding the product with
-    /// [`LinkPoses::mass_matrix`](crate::LinkPoses::mass_matrix), but Σ J_vᵀ(m J_v u) + J_ωᵀ(RIRᵀ J_ω u) link by link, in time with the number of
-    /// links times the joints that carry each. In kg m²/s where the joint turns, kg m/s where it slides.
+    /// Generalised momenta M(q)u, (n, N), of joint velocities u (n, N). Up to rounding, they are the product with
+    /// [`LinkPoses::mass_matrix`](crate::LinkPoses::mass_matrix), but computed link by link as Σ J_vᵀ(m J_v u) + J_ωᵀ(RIRᵀ J_ω u). The time
+    /// grows with the number of links times the joints that carry each. In kg m²/s for rotating joints, kg m/s for sliding ones.
     ///
     /// # Errors
     /// [`KinematicsError::VelocitiesShape`], or as [`RobotModel::inertials`].
@@ -24,7 +24,7 @@ impl LinkPosesBatch<'_> {
     }
 }
 
-/// Sums up all momenta, compiled for the machine it runs on.
+/// Sums all momenta, compiled for the processor at hand.
 struct Sum<'a, 'v> {
     poses: &'a LinkPosesBatch<'a>,
     inertials: &'a [Inertial],
@@ -61,7 +61,7 @@ impl WithSimd for Sum<'_, '_> {
     }
 }
 
-/// Adds one link's part of the momenta: its own velocity, its own momentum, and that seen by the joints that carry it.
+/// Adds one link's part of the momenta: computes its velocity and momentum, and projects the momentum onto the joints that carry it.
 #[inline(always)]
 fn add_link<S: Simd>(
     simd: S,

@@ -4,8 +4,8 @@ use pulp::{Simd, WithSimd};
 
 use crate::nodes::{Coupling, Node, Placement, PlacementGroup, Position};
 
-/// Memory that the computations write to; after the first use with a robot nothing is allocated any more. One
-/// workspace serves any number of robots and chains, one at a time.
+/// Memory that the computations write to; after the first use with a robot no more is allocated. One workspace
+/// serves any number of robots and chains, one at a time.
 #[derive(Debug, Clone, Default)]
 pub struct Workspace {
     pub(super) values: Vec<Lanes>,
@@ -17,12 +17,12 @@ pub struct Workspace {
 }
 
 impl Workspace {
-    /// An empty workspace; it grows at the first use.
+    /// An empty workspace; it grows on first use.
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// Makes room. Lanes that no joint owns hold some finite number.
+    /// Resizes the memory. Lanes without a joint hold some finite number.
     pub(crate) fn fit(&mut self, n_nodes: usize, n_couplings: usize) {
         for lanes in [&mut self.values, &mut self.sines, &mut self.cosines] {
             lanes.resize_with(groups_of(n_couplings), Lanes::default);
@@ -37,7 +37,7 @@ impl Workspace {
         &self.placements
     }
 
-    /// [`Workspace::place`], after [`Workspace::fit`], for a caller that has dispatched already.
+    /// [`Workspace::place`] after [`Workspace::fit`], for callers that have already dispatched.
     #[inline(always)]
     pub(crate) fn place_inline<S: Simd>(
         &mut self,
@@ -50,7 +50,7 @@ impl Workspace {
             *value = coupling.multiplier * q[coupling.column] + coupling.offset;
         }
         sin_cos_all_dispatched(&self.values, &mut self.sines, &mut self.cosines);
-        // Left to itself, the compiler gathers parts of two columns into one register.
+        // Otherwise the compiler gathers parts of two columns into one register.
         if S::F64_LANES == 4 {
             self.place_nodes(simd, nodes, |placement| placement.in_registers(simd), Placement::in_memory);
         } else {
@@ -59,7 +59,7 @@ impl Workspace {
         &self.placements
     }
 
-    /// Places every node once the sines and cosines are known; vectors of `W` numbers `T`, as loaded and stored.
+    /// Places every node from known sines and cosines; vectors have `W` numbers `T`, converted by `load` and `store`.
     #[inline(always)]
     fn place_nodes<T: Number, const W: usize>(
         &mut self,
@@ -73,7 +73,7 @@ impl Workspace {
         let placements = &mut self.placements[..nodes.len()];
         let mut previous = load(&Placement::IDENTITY);
         for (index, node) in nodes.iter().enumerate().skip(1) {
-            // Most links hang on the link before them, which is still at hand.
+            // The parent of most links is the previous link, which is still in registers.
             let parent = if node.parent + 1 == index { previous } else { load(&placements[node.parent]) };
             let position = match node.coupling {
                 Some(coupling) => Position::of(token, values[coupling], sines[coupling], cosines[coupling]),
@@ -85,7 +85,7 @@ impl Workspace {
     }
 }
 
-/// [`Workspace::place_inline`], compiled for the machine it runs on.
+/// [`Workspace::place_inline`], compiled for the processor at hand.
 struct PlaceAll<'a> {
     workspace: &'a mut Workspace,
     nodes: &'a [Node],
@@ -109,7 +109,7 @@ mod tests {
     use super::*;
     use crate::forward::upper_body;
 
-    /// The vector code and its plain twin give the same bits.
+    /// Vector code and scalar code give the same bits.
     #[test]
     fn dispatch_changes_no_bit() {
         let robot = upper_body();

@@ -3,9 +3,10 @@ use nalgebra::{IsometryMatrix3, UnitVector3, Vector3};
 use super::{LinkId, RobotModel};
 use crate::nodes::{Coupling, Motion, Padded};
 
-/// How a link hangs on its parent: its pose is the parent's, then `origin`, then what the joint does.
+/// How a link is attached to its parent: its pose is the parent's, followed by `origin` and the
+/// joint's motion.
 ///
-/// All that forward kinematics needs to know, for those who draw or export a robot.
+/// This is all that forward kinematics uses, for programs that draw or export a robot.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Attachment {
     /// The link that carries this one.
@@ -19,15 +20,15 @@ pub struct Attachment {
 /// The motion of a joint: a rotation or a translation by `multiplier` · q\[`column`\] + `offset`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct JointMotion {
-    /// About or along `axis`.
+    /// Rotation about `axis` or translation along it.
     pub kind: MotionKind,
-    /// In the joint's frame.
+    /// The axis in the joint's frame.
     pub axis: UnitVector3<f64>,
-    /// Place in a configuration; a mimic joint has the place of the joint that it follows in the end.
+    /// Index in a configuration; for a mimic joint, that of the joint that it ultimately follows.
     pub column: usize,
-    /// 1 but for mimic joints.
+    /// 1 except for mimic joints.
     pub multiplier: f64,
-    /// In radians or metres; 0 but for mimic joints.
+    /// In radians or metres; 0 except for mimic joints.
     pub offset: f64,
 }
 
@@ -41,7 +42,7 @@ pub enum MotionKind {
 }
 
 impl RobotModel {
-    /// How a link hangs on its parent; `None` for the root.
+    /// How a link is attached to its parent; `None` for the root.
     pub fn attachment(&self, link: LinkId) -> Option<Attachment> {
         let parent = self.parent(link)?;
         let node = &self.nodes[link.0];
@@ -59,7 +60,7 @@ fn joint_motion(motion: Motion, Coupling { column, multiplier, offset }: Couplin
         Motion::Rotation(axis) => (MotionKind::Rotation, vector(axis)),
         Motion::Translation(axis) => (MotionKind::Translation, vector(axis)),
     };
-    // A rotation about −z is kept as one about z, backwards.
+    // A rotation about −z is stored as the reverse rotation about z.
     let sign = 1.0_f64.copysign(multiplier);
     let axis = UnitVector3::new_unchecked(axis * sign);
     Some(JointMotion { kind, axis, column, multiplier: sign * multiplier, offset: sign * offset })

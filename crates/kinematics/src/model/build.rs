@@ -12,8 +12,8 @@ use crate::{
 };
 
 impl RobotModel {
-    /// Builds a robot from the text of a URDF, version 1.0, 1.1 or 1.2. Tags that say nothing about kinematics are
-    /// passed over, whatever is in them.
+    /// Builds a robot from the text of a URDF, version 1.0, 1.1 or 1.2. Tags unrelated to kinematics are ignored, whatever
+    /// their contents.
     ///
     /// # Errors
     /// [`KinematicsError::NotXml`], or [`KinematicsError::Urdf`] with the link or joint that breaks a rule.
@@ -62,9 +62,9 @@ impl RobotModel {
     }
 }
 
-/// The robot that the crate urdf-rs has read, version 0.10: the one that [`RobotModel::from_urdf`] builds from the same
-/// text, as far as urdf-rs keeps it. What urdf-rs makes of a text differs in three ways: a `<limit>` of zeros alone counts
-/// as missing, an infinite bound of URDF 1.2 counts as missing, and quaternions have become roll, pitch and yaw.
+/// Converts a robot read by the crate urdf-rs, version 0.10. The result is the one that [`RobotModel::from_urdf`] builds
+/// from the same text, as far as urdf-rs keeps it. There are three differences: a `<limit>` of zeros alone counts as
+/// missing, an infinite bound of URDF 1.2 counts as missing, and quaternions have become roll, pitch and yaw.
 ///
 /// ```
 /// use kinematics::RobotModel;
@@ -83,7 +83,7 @@ impl TryFrom<&urdf_rs::Robot> for RobotModel {
     }
 }
 
-/// Where in the tree each link of the document stands.
+/// The index in the tree of each link of the document.
 fn places(branches: &[Branch]) -> Vec<LinkId> {
     let mut places = vec![LinkId(0); branches.len()];
     for (place, branch) in branches.iter().enumerate() {
@@ -106,7 +106,7 @@ fn placed_shapes(shapes: Vec<UrdfCollision>, branches: &[Branch]) -> Vec<Collisi
     shapes.into_iter().map(placed).collect()
 }
 
-/// A joint's motion, and the sign that its value changes by.
+/// A joint's motion, and the sign by which its value is multiplied.
 fn motion(motion: &UrdfMotion) -> (Motion, f64) {
     match motion {
         UrdfMotion::Fixed => (Motion::Fixed, 1.0),

@@ -17,7 +17,7 @@ impl Joint {
         &self.name
     }
 
-    /// How it moves, and so the unit of its coordinate.
+    /// Type of motion, which determines the unit of its coordinate.
     pub fn kind(&self) -> JointKind {
         self.kind
     }
@@ -33,19 +33,19 @@ impl Joint {
     }
 }
 
-/// Checks a configuration against the joints it is for.
+/// Checks a configuration against its joints.
 #[inline]
 pub(crate) fn checked<'q>(q: &'q DVectorView<'_, f64>, joints: &[Joint]) -> Result<&'q [f64], KinematicsError> {
     within(q, joints, f64::MAX)
 }
 
-/// Checks a configuration that links are to be placed by.
+/// Checks a configuration for placing links.
 #[inline]
 pub(crate) fn placeable<'q>(q: &'q DVectorView<'_, f64>, joints: &[Joint]) -> Result<&'q [f64], KinematicsError> {
     within(q, joints, FARTHEST)
 }
 
-/// Checks configurations (n, N) that links are to be placed by.
+/// Checks configurations (n, N) for placing links.
 pub(crate) fn all_placeable(q: &DMatrixView<'_, f64>, joints: &[Joint]) -> Result<(), KinematicsError> {
     for (index, column) in q.column_iter().enumerate() {
         placeable(&column, joints).map_err(|error| KinematicsError::InBatch { index, reason: Box::new(error) })?;
@@ -59,7 +59,7 @@ fn within<'q>(q: &'q DVectorView<'_, f64>, joints: &[Joint], most: f64) -> Resul
     if q.len() != joints.len() {
         return Err(KinematicsError::ConfigurationLength { found: q.len(), expected: joints.len() });
     }
-    // No early exit: then the loop becomes vector code.
+    // Without an early exit, the loop is vectorized.
     if q.iter().fold(true, |all, value| all & (value.abs() <= most)) { Ok(q) } else { Err(beyond(q, joints, most)) }
 }
 

@@ -5,15 +5,15 @@ use super::{RobotModel, joint::checked};
 use crate::{JointKind, KinematicsError};
 
 impl RobotModel {
-    /// A configuration (n), each coordinate drawn uniformly between its limits, a continuous joint's angle from
-    /// [−π, π). The limits of mimic joints do not count: a configuration does not hold them.
+    /// A random configuration (n): each coordinate is uniform between its limits, a continuous joint's angle in
+    /// [−π, π). The limits of mimic joints are ignored, because a configuration does not contain them.
     pub fn random_configuration(&self, rng: &mut impl Rng) -> DVector<f64> {
         let mut q = DVector::zeros(self.n_joints());
         self.draw(rng, q.as_mut_slice());
         q
     }
 
-    /// Writes a [`RobotModel::random_configuration`] into `q` (n). Allocates nothing.
+    /// Writes a [`RobotModel::random_configuration`] into `q` (n). Does not allocate.
     ///
     /// # Errors
     /// [`KinematicsError::ConfigurationLength`].
@@ -34,16 +34,16 @@ impl RobotModel {
             let part: f64 = rng.random();
             *value = match joint.kind {
                 JointKind::Continuous => std::f64::consts::PI * (2.0 * part - 1.0),
-                // Two products, because upper − lower may be more than a number can hold.
+                // Two products, because upper − lower may overflow.
                 _ => (joint.lower * (1.0 - part) + joint.upper * part).clamp(joint.lower, joint.upper),
             };
         }
     }
 
-    /// Moves every coordinate of `q` (n) that is beyond a limit to that limit, and says how many there were.
+    /// Clips every coordinate of `q` (n) to its limits, and returns the number of coordinates that changed.
     ///
     /// # Errors
-    /// [`KinematicsError::ConfigurationLength`] or [`KinematicsError::NotFinite`]; `q` is as it was then.
+    /// [`KinematicsError::ConfigurationLength`] or [`KinematicsError::NotFinite`]; then `q` is unchanged.
     pub fn clip(&self, mut q: DVectorViewMut<'_, f64>) -> Result<usize, KinematicsError> {
         let beyond = self.n_beyond_limits(q.as_view())?;
         for (value, joint) in q.iter_mut().zip(self.joints.iter()) {
@@ -52,7 +52,7 @@ impl RobotModel {
         Ok(beyond)
     }
 
-    /// How many coordinates of `q` (n) are beyond their limits.
+    /// Number of coordinates of `q` (n) that are beyond their limits.
     ///
     /// # Errors
     /// [`KinematicsError::ConfigurationLength`] or [`KinematicsError::NotFinite`].

@@ -1,4 +1,4 @@
-//! Mimic joints: chains of "follows" resolved down to the joint that a configuration really holds.
+//! Mimic joints: resolves chains of followed joints down to the active joint.
 
 use std::collections::HashMap;
 
@@ -9,8 +9,8 @@ use crate::{
     urdf::{Element, Mimic, UrdfJoint, UrdfMotion, UrdfProblem, bounded},
 };
 
-/// For each joint of the file how it gets its value, `None` for fixed joints. Columns count the active joints (those
-/// that move and follow no other) in document order.
+/// For each joint of the file, how its value depends on the configuration; `None` for fixed joints. Columns count the
+/// active joints (those that move and follow no other) in document order.
 pub(crate) fn couplings(joints: &[UrdfJoint]) -> Result<Vec<Option<Coupling>>, KinematicsError> {
     let by_name: HashMap<&str, usize> = joints.iter().enumerate().map(|(i, joint)| (joint.name.as_str(), i)).collect();
     let mut couplings = vec![None; joints.len()];
@@ -29,8 +29,8 @@ pub(crate) fn is_active(joint: &UrdfJoint) -> bool {
     matches!(joint.motion, UrdfMotion::Moving { mimic: None, .. })
 }
 
-/// Finds the couplings of a joint and of all that it follows: q = m₁(m₂(… `q_active` …) + o₂) + o₁. What is found once is
-/// not looked for again, so that a long chain takes no longer than its length.
+/// Finds the couplings of a joint and of all joints that it follows: q = m₁(m₂(… `q_active` …) + o₂) + o₁. Results are
+/// cached, so that the time is linear in the length of a chain.
 fn resolve(
     start: usize,
     joints: &[UrdfJoint],
@@ -60,7 +60,7 @@ fn resolve(
     Ok(())
 }
 
-/// The joint followed by a joint without a coupling.
+/// The followed joint of a joint that has no coupling yet.
 fn mimic(joint: &UrdfJoint) -> &Mimic {
     match &joint.motion {
         UrdfMotion::Moving { mimic: Some(mimic), .. } => mimic,
@@ -68,7 +68,7 @@ fn mimic(joint: &UrdfJoint) -> &Mimic {
     }
 }
 
-/// Names the ring that a joint is part of, from its first joint in the file.
+/// The error for a cycle of mimic joints that contains a joint, starting with its first joint in the file.
 fn ring(member: usize, joints: &[UrdfJoint], by_name: &HashMap<&str, usize>) -> KinematicsError {
     let follows = |at: usize| by_name[mimic(&joints[at]).target.as_str()];
     let members = std::iter::successors(Some(follows(member)), |&at| (at != member).then(|| follows(at)));

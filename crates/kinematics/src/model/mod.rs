@@ -1,5 +1,5 @@
-//! The robot: [`RobotModel`], built (`build`) from tags as a tree (`tree`) whose mimic joints are resolved
-//! (`mimic`); its joints (`joint`) and their limits (`limits`); how a link hangs on its parent (`attachment`).
+//! The robot: [`RobotModel`], built (`build`) from tags as a tree (`tree`) with resolved mimic joints (`mimic`); its
+//! joints (`joint`) and their limits (`limits`); how a link is attached to its parent (`attachment`).
 
 mod attachment;
 mod build;
@@ -21,8 +21,8 @@ use crate::{
     nodes::{Coupling, Node},
 };
 
-/// A link of one robot; its frame is the frame of the joint that carries it, moved along by it. Asked of another robot,
-/// it is another link or a panic.
+/// A link of one robot; its frame is the frame of the joint that carries it, and moves with it. With another robot, it
+/// denotes another link or causes a panic.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct LinkId(pub(crate) usize);
 
@@ -46,7 +46,7 @@ pub struct RobotModel {
     pub(crate) warnings: Vec<UrdfWarning>,
 }
 
-/// A shape that a link fills, for collision.
+/// A collision shape of a link.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CollisionShape {
     /// The link.
@@ -57,21 +57,21 @@ pub struct CollisionShape {
     pub geometry: Geometry,
 }
 
-/// How a link resists motion.
+/// Inertia of a link.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Inertial {
     /// The link.
     pub link: LinkId,
     /// The centre of mass and the axes of `tensor`, in the link's frame, metres.
     pub origin: IsometryMatrix3<f64>,
-    /// Kilograms.
+    /// Mass in kilograms.
     pub mass: f64,
     /// Inertia tensor about the centre of mass, kg m².
     pub tensor: Matrix3<f64>,
 }
 
 impl RobotModel {
-    /// The robot's name; empty where the file gives none.
+    /// The robot's name; empty if the file has none.
     pub fn name(&self) -> &str {
         &self.name
     }
@@ -86,7 +86,7 @@ impl RobotModel {
         self.joints.len()
     }
 
-    /// The place of an active joint in a configuration.
+    /// The index of an active joint in a configuration.
     ///
     /// # Errors
     /// [`KinematicsError::UnknownJoint`].
@@ -102,7 +102,7 @@ impl RobotModel {
         (0..self.links.len()).map(LinkId)
     }
 
-    /// The root link, in whose frame all poses are.
+    /// The root link; all poses are in its frame.
     pub fn root(&self) -> LinkId {
         LinkId(0)
     }
@@ -120,7 +120,7 @@ impl RobotModel {
         &self.links[link.0]
     }
 
-    /// The link that a link hangs on; `None` for the root.
+    /// A link's parent; `None` for the root.
     pub fn parent(&self, link: LinkId) -> Option<LinkId> {
         (link.0 != 0).then(|| LinkId(self.nodes[link.0].parent))
     }
@@ -128,7 +128,7 @@ impl RobotModel {
     /// The collision shapes of all links.
     ///
     /// # Errors
-    /// [`KinematicsError::Urdf`] with the link whose `<collision>` is at fault; kinematics works all the same.
+    /// [`KinematicsError::Urdf`] with the link whose `<collision>` is faulty; kinematics still works.
     pub fn collision_shapes(&self) -> Result<&[CollisionShape], KinematicsError> {
         self.collision_shapes.as_deref().map_err(Clone::clone)
     }
@@ -136,7 +136,7 @@ impl RobotModel {
     /// Masses and inertia tensors of the links that have any.
     ///
     /// # Errors
-    /// [`KinematicsError::Urdf`] with the link whose `<inertial>` is at fault; kinematics works all the same.
+    /// [`KinematicsError::Urdf`] with the link whose `<inertial>` is faulty; kinematics still works.
     pub fn inertials(&self) -> Result<&[Inertial], KinematicsError> {
         self.inertials.as_deref().map_err(Clone::clone)
     }

@@ -1,4 +1,4 @@
-//! Links and joints as a tree: who hangs on whom, and an order in which parents come first.
+//! Links and joints as a tree, ordered so that parents come first.
 
 use std::collections::HashMap;
 
@@ -8,7 +8,8 @@ use crate::{
     urdf::{Element, UrdfJoint, UrdfProblem, UrdfRobot},
 };
 
-/// A link of the tree; `parent` is a place in the order, `joint` an index into the file's joints. The root has none.
+/// A link of the tree; `parent` is an index in the order, `joint` an index into the file's joints. The root has
+/// neither.
 pub(crate) struct Branch {
     pub(crate) link: usize,
     pub(crate) parent: usize,
@@ -31,7 +32,7 @@ pub(crate) fn ordered(urdf: &UrdfRobot) -> Result<Vec<Branch>, KinematicsError> 
     if order.len() < urdf.links.len() { Err(cycle(urdf, &ends, &carriers, &order)) } else { Ok(order) }
 }
 
-/// Indices by name; a name may appear once.
+/// Indices by name; names must be unique.
 fn index_of<'n>(
     names: impl Iterator<Item = &'n str>,
     element: fn(String) -> Element,
@@ -57,7 +58,7 @@ fn ends(joint: &UrdfJoint, urdf: &UrdfRobot, links: &HashMap<&str, usize>) -> Re
     Ok((find("parent", &joint.parent)?, find("child", &joint.child)?))
 }
 
-/// The joint that carries each link.
+/// The joint that carries each link, if any.
 fn carriers(urdf: &UrdfRobot, ends: &[(usize, usize)]) -> Result<Vec<Option<usize>>, KinematicsError> {
     let mut carriers: Vec<Option<usize>> = vec![None; urdf.links.len()];
     for (joint, &(_, child)) in ends.iter().enumerate() {
@@ -88,7 +89,7 @@ fn depth_first(root: usize, ends: &[(usize, usize)], n_links: usize) -> Vec<Bran
     order
 }
 
-/// Names one cycle among the links that no root reaches.
+/// The error for one cycle among the links that are not reachable from a root.
 fn cycle(urdf: &UrdfRobot, ends: &[(usize, usize)], carriers: &[Option<usize>], reached: &[Branch]) -> KinematicsError {
     let mut seen = vec![false; urdf.links.len()];
     for branch in reached {

@@ -1,5 +1,5 @@
-/// How a moving joint gets its value from the configuration: multiplier · q[column] + offset. A mimic joint has the
-/// column of the joint it follows in the end.
+/// How a moving joint's value depends on the configuration: multiplier · q[column] + offset. A mimic joint has the
+/// column of the joint that it ultimately follows.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Coupling {
     pub(crate) column: usize,

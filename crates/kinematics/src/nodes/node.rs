@@ -8,14 +8,14 @@ use super::placement::{Padded, Placement, padded};
 pub(crate) struct Node {
     /// Index of the parent node, smaller than the node's own; the root is its own parent.
     pub(crate) parent: usize,
-    /// Index of the joint's value among the couplings; none where the motion is fixed.
+    /// Index of the joint's value among the couplings; `None` if the motion is fixed.
     pub(crate) coupling: Option<usize>,
     pub(crate) motion: Motion,
     translation: Option<Padded>,
     rotation: Option<[Padded; 3]>,
 }
 
-/// How a joint moves its link. Coordinate axes are worth their own cases: they leave a column alone.
+/// How a joint moves its link. Rotations about coordinate axes are separate cases, because they leave one column unchanged.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Motion {
     Fixed,
@@ -37,7 +37,7 @@ pub(crate) struct Position<T> {
 }
 
 impl<T: Number> Position<T> {
-    /// The same in every lane.
+    /// The same numbers in every lane.
     #[inline(always)]
     pub(crate) fn of(token: T::Token, value: f64, sine: f64, cosine: f64) -> Self {
         Position { value: T::splat(token, value), sine: T::splat(token, sine), cosine: T::splat(token, cosine) }
@@ -51,7 +51,8 @@ impl<T: Number> Position<T> {
 }
 
 impl Motion {
-    /// A rotation about an axis, and the sign that its angle has to change by: a rotation about −z is one about z, backwards.
+    /// A rotation about an axis, and the sign by which its angle is multiplied: a rotation about −z is the reverse of one
+    /// about z.
     pub(crate) fn rotation(axis: Unit<Vector3<f64>>) -> (Self, f64) {
         match (axis.x, axis.y, axis.z) {
             (x, 0.0, 0.0) => (Motion::RotationX, x),
@@ -76,7 +77,7 @@ impl Node {
         }
     }
 
-    /// Where the link is, when its parent link is at `parent`.
+    /// The link's placement if its parent link is at `parent`.
     #[inline(always)]
     pub(crate) fn placed<T: Number, const W: usize>(
         &self,
@@ -101,7 +102,7 @@ impl Node {
         }
     }
 
-    /// The joint's axis in root axes, when its link is at `placement`; a motion leaves its own axis alone.
+    /// The joint's axis in root axes if its link is at `placement`; a motion does not change its own axis.
     #[inline(always)]
     pub(crate) fn axis<T: Number, const W: usize>(&self, placement: &Placement<T, W>) -> [T; W] {
         match self.motion {

@@ -4,11 +4,12 @@ use lanes::{Lanes, Number, Register};
 use nalgebra::{IsometryMatrix3, Matrix3, Point3, Rotation3, Translation3, Vector3};
 use pulp::Simd;
 
-/// A vector with a fourth number that means nothing: four fill a vector register.
+/// A vector with a fourth, unused number, so that it fills a vector register.
 pub(crate) type Padded = [f64; 4];
 
-/// Where a frame is: the columns of its rotation, and its origin, in root axes and metres. Of one configuration, vectors
-/// are [`Padded`], or one register of four; of several, each of the three parts of a vector is a number for every one of them.
+/// The placement of a frame: the columns of its rotation, and its origin, in root axes and metres. For one configuration,
+/// vectors are [`Padded`], or one register of four; for several, each of a vector's three components is a number for each
+/// configuration.
 #[derive(Debug, Clone, Copy)]
 #[repr(align(64))]
 pub(crate) struct Placement<T = f64, const W: usize = 4> {
@@ -25,7 +26,7 @@ impl Placement {
 }
 
 impl<T: Number, const W: usize> Placement<T, W> {
-    /// The root's.
+    /// The root's placement.
     #[inline(always)]
     pub(crate) fn identity(token: T::Token) -> Self {
         let (zero, one) = (T::splat(token, 0.0), T::splat(token, 1.0));
@@ -62,7 +63,7 @@ impl<T: Number, const W: usize> Placement<T, W> {
         self
     }
 
-    /// Turns the frame on the spot by a rotation given by its columns.
+    /// Rotates the frame about its origin by a rotation given by its columns.
     #[inline(always)]
     pub(crate) fn rotated<F: Copy, const P: usize>(mut self, by: &[[F; P]; 3]) -> Self
     where
@@ -72,8 +73,7 @@ impl<T: Number, const W: usize> Placement<T, W> {
         self
     }
 
-    /// Turns the frame on the spot about one of its own axes: only the two other columns change, `first` towards
-    /// `second`.
+    /// Rotates the frame about one of its own axes: only the two other columns change, `first` towards `second`.
     #[inline(always)]
     pub(crate) fn turned(mut self, first: usize, second: usize, sine: T, cosine: T) -> Self {
         let (a, b) = (self.axes[first], self.axes[second]);
@@ -91,7 +91,7 @@ impl Placement {
         Point3::new(x, y, z)
     }
 
-    /// Each vector in a register, where a register holds four numbers.
+    /// Each vector in a register, if a register holds four numbers.
     #[inline(always)]
     pub(crate) fn in_registers<S: Simd>(&self, simd: S) -> Placement<Register<S>, 1> {
         let zero = [Register::splat(simd, 0.0)];
@@ -111,7 +111,7 @@ impl Placement {
 }
 
 impl<S: Simd> Placement<Register<S>, 1> {
-    /// Puts [`Placement::in_registers`] back.
+    /// The inverse of [`Placement::in_registers`].
     #[inline(always)]
     pub(crate) fn in_memory(self) -> Placement {
         let mut placement = Placement::IDENTITY;
@@ -142,7 +142,7 @@ impl PlacementGroup {
         placement
     }
 
-    /// Puts the lanes of register number `part` back.
+    /// Stores the lanes of register number `part`.
     #[inline(always)]
     pub(crate) fn store<S: Simd>(&mut self, placement: &Placement<Register<S>, 3>, part: usize) {
         for i in 0..3 {
@@ -153,7 +153,7 @@ impl PlacementGroup {
         }
     }
 
-    /// The placement in one of the configurations.
+    /// The placement for one of the configurations.
     #[inline]
     pub(crate) fn lane(&self, lane: usize) -> Placement {
         let vector = |of: &[Lanes; 3]| [of[0][lane], of[1][lane], of[2][lane], 0.0];

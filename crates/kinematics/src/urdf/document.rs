@@ -13,19 +13,19 @@ pub(crate) struct UrdfRobot {
     pub(crate) name: String,
     pub(crate) links: Vec<String>,
     pub(crate) joints: Vec<UrdfJoint>,
-    /// Faults here are for those who ask for collision shapes; kinematics does not need them.
+    /// Kinematics does not need collision shapes, so a fault here is reported only when they are requested.
     pub(crate) collisions: Result<Vec<UrdfCollision>, KinematicsError>,
-    /// Faults here are for those who ask for inertia.
+    /// A fault here is reported only when inertia is requested.
     pub(crate) inertials: Result<Vec<UrdfInertial>, KinematicsError>,
     pub(crate) warnings: Vec<UrdfWarning>,
 }
 
-/// Reads the tags of kinematics and collision and passes over all others.
+/// Reads the tags of kinematics and collision and ignores all others.
 pub(crate) fn read(text: &str) -> Result<UrdfRobot, KinematicsError> {
     parsed(text, read_robot)
 }
 
-/// What `read` makes of the outermost tag of a text, which must be `<robot>`.
+/// The result of `read` for the outermost tag of a text, which must be `<robot>`.
 pub(crate) fn parsed<T>(
     text: &str,
     read: impl FnOnce(Node<'_, '_>) -> Result<T, KinematicsError>,

@@ -2,7 +2,7 @@ use std::fmt;
 
 use thiserror::Error;
 
-/// The part of a URDF that an error or a warning speaks of. Numbers count from 0, in document order.
+/// The part of a URDF to which an error or a warning refers. Numbers count from 0, in document order.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Element {
     /// The robot as a whole.
@@ -29,14 +29,14 @@ impl fmt::Display for Element {
     }
 }
 
-/// Something in a URDF that was passed over; the robot is what the rest of the file says.
+/// A part of a URDF that was ignored; the robot is built from the rest of the file.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum UrdfWarning {
-    /// `quat_xyzw` counts from URDF version 1.1 on.
+    /// `quat_xyzw` has an effect from URDF version 1.1 on.
     #[error("{element}: quat_xyzw is ignored in URDF 1.0; write rpy, or version=\"1.1\" at the robot")]
     QuaternionIgnored {
-        /// Where it stands.
+        /// Its place.
         element: Element,
     },
 }

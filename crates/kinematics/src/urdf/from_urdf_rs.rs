@@ -1,4 +1,4 @@
-//! Robots read by the crate urdf-rs, as [`UrdfRobot`]: its numbers and names are checked as those of a text are.
+//! Converts robots read by the crate urdf-rs to [`UrdfRobot`], with the same checks of numbers and names as for a text.
 
 use nalgebra::{IsometryMatrix3, Translation3, Vector3};
 use urdf_rs::{Joint, JointLimit, JointType, Link, Pose, Robot};
@@ -12,7 +12,7 @@ use super::{
 };
 use crate::KinematicsError;
 
-/// The tags of kinematics and collision.
+/// Converts the tags of kinematics and collision.
 pub(crate) fn from_urdf_rs(robot: &Robot) -> Result<UrdfRobot, KinematicsError> {
     let version = Version::of(robot.version.as_deref())?;
     let name = |(index, link): (usize, &Link)| named(&link.name, || Element::UnnamedLink(index), "link.name");
@@ -77,8 +77,8 @@ fn moving(joint: &Joint, kind: JointKind, version: Version) -> Result<UrdfMotion
     Ok(UrdfMotion::Moving { kind, axis, lower, upper, mimic: mimic.transpose()? })
 }
 
-/// Lower and upper limit. A missing `<limit>` is not told from one of zeros alone, nor a missing bound of URDF 1.2 from
-/// an infinite one; both are taken to be missing.
+/// Lower and upper limit. urdf-rs does not distinguish a missing `<limit>` from one of zeros alone, nor a missing bound
+/// of URDF 1.2 from an infinite one; both count as missing.
 fn limits(limit: &JointLimit, version: Version) -> Result<(f64, f64), UrdfProblem> {
     if *limit == JointLimit::default() {
         return Err(UrdfProblem::MissingLimit);

@@ -14,7 +14,7 @@ use crate::KinematicsError;
 pub enum Geometry {
     /// A box about the origin.
     Box {
-        /// Whole lengths along x, y, z.
+        /// Full lengths along x, y, z.
         size: Vector3<f64>,
     },
     /// A sphere about the origin.
@@ -26,7 +26,7 @@ pub enum Geometry {
     Cylinder {
         /// Its radius.
         radius: f64,
-        /// Its whole length.
+        /// Its full length.
         length: f64,
     },
     /// A cylinder about the origin, along z, with a half sphere at each end.
@@ -101,7 +101,7 @@ impl Tag<'_> {
         self.sizes::<1>(name).map(|[size]| size)
     }
 
-    /// Lengths that must be there and not be negative.
+    /// Required lengths, which must not be negative.
     fn sizes<const N: usize>(&self, name: &'static str) -> Result<[f64; N], KinematicsError> {
         let missing = || self.error(UrdfProblem::MissingAttribute { attribute: name });
         let sizes = self.numbers::<N>(name)?.ok_or_else(missing)?;

@@ -19,7 +19,7 @@ pub(crate) struct UrdfInertial {
 }
 
 impl UrdfInertial {
-    /// Checked numbers, (ixx, ixy, ixz, iyy, iyz, izz) last; none for a link that weighs nothing.
+    /// Checked numbers, with (ixx, ixy, ixz, iyy, iyz, izz) last; `None` for a link without mass.
     pub(super) fn of(
         link: usize,
         origin: IsometryMatrix3<f64>,

@@ -19,7 +19,7 @@ pub(crate) struct UrdfJoint {
 }
 
 impl UrdfJoint {
-    /// A rule that this joint breaks.
+    /// The error for a rule that this joint breaks.
     pub(crate) fn error(&self, problem: UrdfProblem) -> KinematicsError {
         KinematicsError::urdf(Element::Joint(self.name.clone()), problem)
     }
@@ -40,7 +40,7 @@ pub(crate) struct Mimic {
     pub(crate) offset: f64,
 }
 
-/// How an active joint moves.
+/// Type of an active joint.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum JointKind {
     /// A rotation between two limits, in radians.
@@ -91,7 +91,7 @@ fn moving(joint: Tag<'_>, kind: JointKind, version: Version) -> Result<UrdfMotio
     Ok(UrdfMotion::Moving { kind, axis, lower, upper, mimic: mimic(joint)? })
 }
 
-/// The axis, made a unit vector; x where none is given.
+/// The axis as a unit vector; x by default.
 fn axis(joint: Tag<'_>) -> Result<Unit<Vector3<f64>>, KinematicsError> {
     let Some(axis) = joint.child("axis") else { return Ok(Vector3::x_axis()) };
     let xyz = axis.numbers::<3>("axis.xyz")?.map_or_else(Vector3::x, Vector3::from);
@@ -100,11 +100,11 @@ fn axis(joint: Tag<'_>) -> Result<Unit<Vector3<f64>>, KinematicsError> {
 
 /// An axis as a unit vector.
 pub(super) fn direction(xyz: Vector3<f64>) -> Result<Unit<Vector3<f64>>, UrdfProblem> {
-    // Scaled first, so that no square overflows or vanishes.
+    // Scaled first, so that no square overflows or underflows.
     Unit::try_new(xyz / xyz.amax(), 0.0).ok_or(UrdfProblem::ZeroAxis)
 }
 
-/// Lower and upper limit. Up to version 1.1 a bound that is not given is 0.
+/// Lower and upper limit. Up to version 1.1, a missing bound is 0.
 fn limits(joint: Tag<'_>, version: Version) -> Result<(f64, f64), KinematicsError> {
     let limit = joint.child("limit").ok_or_else(|| joint.error(UrdfProblem::MissingLimit))?;
     let bound = |attribute, bound| match limit.number(attribute)? {
@@ -116,7 +116,7 @@ fn limits(joint: Tag<'_>, version: Version) -> Result<(f64, f64), KinematicsErro
     in_order(lower, upper).map_err(|problem| joint.error(problem))
 }
 
-/// A pair of limits.
+/// A pair of limits, which must be in order.
 pub(super) fn in_order(lower: f64, upper: f64) -> Result<(f64, f64), UrdfProblem> {
     if lower > upper { Err(UrdfProblem::LimitsInverted { lower, upper }) } else { Ok((lower, upper)) }
 }

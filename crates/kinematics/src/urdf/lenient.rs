@@ -1,18 +1,19 @@
-//! The usual readers of URDF are lenient about XML, and many published files are not well formed. What is mended here
-//! says nothing about a robot: comments with two hyphens in them, text before the XML declaration, undeclared prefixes.
+//! Common URDF readers are lenient about XML, and many published files are not well-formed. This module repairs faults
+//! that do not concern the robot: comments with two hyphens in them, text before the XML declaration, undeclared
+//! prefixes.
 
 use roxmltree::{Document, Error, ParsingOptions};
 
 use super::{UrdfProblem, scan};
 
-/// Prefixes that are declared before a text is given up; each costs a reading.
+/// Largest number of prefixes that are declared before a text is rejected; each costs a reading.
 const MOST_PREFIXES: usize = 50;
 
 pub(super) fn strict(text: &str) -> Result<Document<'_>, Error> {
     Document::parse_with_options(text, ParsingOptions { allow_dtd: true, ..Default::default() })
 }
 
-/// The text, mended where it can be; lines stay where they are. What would be slow to read is refused.
+/// The text, repaired where possible; line numbers stay the same. Text that would be slow to read is refused.
 pub(super) fn well_formed(text: &str) -> Result<String, UrdfProblem> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let text = blanked(&blanked(text, "<!--", "-->"), "<?xml", "?>");
@@ -34,7 +35,7 @@ fn blanked(text: &str, start: &str, end: &str) -> String {
     kept + rest
 }
 
-/// The text with undeclared prefixes declared at the outermost tag, as foreign tags.
+/// The text with declarations of undeclared prefixes in the outermost tag, as foreign tags.
 fn declared_prefixes(mut text: String) -> String {
     let mut declared: Vec<String> = Vec::new();
     while declared.len() < MOST_PREFIXES {

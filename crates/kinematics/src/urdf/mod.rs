@@ -1,5 +1,5 @@
-//! Reading URDF: text → tags ([`tag`]) → joints and shapes ([`joint`], [`origin`], [`geometry`]) → [`UrdfRobot`]. What
-//! the numbers and names mean together (a tree, mimic chains) is for the model to decide.
+//! Reading URDF: text → tags ([`tag`]) → joints and shapes ([`joint`], [`origin`], [`geometry`]) → [`UrdfRobot`]. The
+//! model checks how numbers and names fit together (a tree, mimic chains).
 
 mod document;
 mod element;

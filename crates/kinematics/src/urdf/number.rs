@@ -1,4 +1,4 @@
-//! Which numbers a robot is made of.
+//! Checks of numbers.
 
 use super::problem::{LARGEST, UrdfProblem};
 
@@ -19,7 +19,7 @@ pub(super) fn size(attribute: &'static str, value: f64) -> Result<f64, UrdfProbl
     if value < 0.0 { Err(UrdfProblem::NegativeSize { attribute, value }) } else { Ok(value.abs()) }
 }
 
-/// Each of several numbers, checked.
+/// Applies a check to each of several numbers.
 pub(super) fn each<const N: usize>(
     attribute: &'static str,
     values: [f64; N],

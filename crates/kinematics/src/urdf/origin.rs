@@ -4,7 +4,7 @@ use super::{Element, UrdfProblem, UrdfWarning, tag::Tag, version::Version};
 use crate::KinematicsError;
 
 /// Reads `<origin>`: metres, and either roll, pitch, yaw about the fixed axes x, y, z or, from version 1.1 on, a
-/// quaternion, which wins. Whatever is missing is zero.
+/// quaternion, which takes precedence. Missing values are zero.
 pub(super) fn read(
     parent: Tag<'_>,
     version: Version,

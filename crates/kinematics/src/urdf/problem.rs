@@ -2,11 +2,11 @@ use thiserror::Error;
 
 use crate::names::proposal;
 
-/// Largest length (metres), angle (radians), scale or multiplier of a robot. No robot comes near it, and products of
-/// such numbers along a tree stay far from where floating point ends.
+/// Largest length (metres), angle (radians), scale or multiplier of a robot. No real robot reaches it, and products
+/// of such numbers along a tree stay far below the floating-point limit.
 pub(crate) const LARGEST: f64 = 1e6;
 
-/// Attributes a tag may have. An XML reader compares each with all before it.
+/// Largest number of attributes of a tag. An XML reader compares each with all before it.
 pub(super) const MOST_ATTRIBUTES: usize = 256;
 
 /// The rule of URDF that a file breaks. Attributes are written `tag.attribute`.
@@ -19,7 +19,7 @@ pub enum UrdfProblem {
         /// The tag found.
         found: String,
     },
-    /// An entity is declared: a short text can stand for a very long one by it.
+    /// The text declares an entity, by which a short text can stand for a very long one.
     #[error("line {line} declares an entity (<!ENTITY); write out in the text what it stands for")]
     Entity {
         /// The line, counted from 1.
@@ -37,25 +37,25 @@ pub enum UrdfProblem {
         /// The version found.
         found: String,
     },
-    /// There is no link at all.
+    /// There are no links.
     #[error("it has no links; a robot has at least one")]
     NoLinks,
     /// Two links, or two joints, share one name.
     #[error("its name is used twice; names of links are unique, and so are names of joints")]
     DuplicateName,
-    /// A tag that must be there is not.
+    /// A required tag is missing.
     #[error("<{tag}> is missing")]
     MissingTag {
         /// The tag.
         tag: &'static str,
     },
-    /// An attribute that must be there is not.
+    /// A required attribute is missing.
     #[error("attribute {attribute} is missing")]
     MissingAttribute {
         /// The attribute.
         attribute: &'static str,
     },
-    /// Text where a number should be.
+    /// A text is not a number.
     #[error("{attribute}: \"{text}\" is not a number (decimal mark is a point, numbers are separated by spaces)")]
     Number {
         /// The attribute.
@@ -63,7 +63,7 @@ pub enum UrdfProblem {
         /// The text.
         text: String,
     },
-    /// A NaN or an infinity.
+    /// A number is NaN or infinite.
     #[error("{attribute}: \"{text}\" is not a finite number")]
     NotFinite {
         /// The attribute.
@@ -71,22 +71,22 @@ pub enum UrdfProblem {
         /// The text.
         text: String,
     },
-    /// A length, an angle or a factor that no robot has, and with which sums along the robot may overflow.
+    /// A length, an angle or a factor is too large for any robot; sums along the robot may overflow.
     #[error("{attribute}: {value:e} is too large, {LARGEST:e} is the most; lengths are metres, angles radians")]
     TooLarge {
         /// The attribute.
         attribute: &'static str,
-        /// The number, or the product or sum that mimic joints make of it.
+        /// The number, or the product or sum computed from it for mimic joints.
         value: f64,
     },
-    /// Too few or too many numbers.
+    /// There are too few or too many numbers.
     #[error("{attribute} has {found} numbers, it needs {expected}")]
     NumberCount {
         /// The attribute.
         attribute: &'static str,
-        /// How many there are.
+        /// Number found.
         found: usize,
-        /// How many there should be.
+        /// Number expected.
         expected: usize,
     },
     /// The axis has no direction.
@@ -95,13 +95,13 @@ pub enum UrdfProblem {
     /// The quaternion is zero, which is not a rotation.
     #[error("origin.quat_xyzw is zero, which is not a rotation")]
     ZeroQuaternion,
-    /// A type that URDF does not know.
+    /// The joint type does not exist in URDF.
     #[error("unknown joint type \"{found}\"; types are revolute, continuous, prismatic and fixed")]
     JointType {
-        /// The type found.
+        /// The given type.
         found: String,
     },
-    /// A joint with several degrees of freedom.
+    /// The joint has several degrees of freedom.
     #[error(
         "{kind} joints are not supported; model the base by single joints, or make the joint fixed and place the base outside"
     )]
@@ -109,20 +109,20 @@ pub enum UrdfProblem {
         /// `floating` or `planar`.
         kind: &'static str,
     },
-    /// A joint names a link that is not there.
+    /// A joint names a link that does not exist.
     #[error("its {role} link \"{link}\" does not exist{}", proposal(near))]
     UnknownLink {
         /// `parent` or `child`.
         role: &'static str,
         /// The name.
         link: String,
-        /// Link names like it, nearest first.
+        /// Similar link names, nearest first.
         near: Vec<String>,
     },
-    /// A revolute or prismatic joint without `<limit>`.
+    /// A revolute or prismatic joint has no `<limit>`.
     #[error("<limit> is missing; revolute and prismatic joints need one (an unlimited rotation is \"continuous\")")]
     MissingLimit,
-    /// A `<limit>` without lower or upper, which URDF 1.2 asks for.
+    /// A `<limit>` lacks lower or upper, which URDF 1.2 requires.
     #[error("limit.{bound} is missing; URDF 1.2 asks for it")]
     MissingBound {
         /// `lower` or `upper`.
@@ -136,12 +136,12 @@ pub enum UrdfProblem {
         /// Upper limit, in radians or metres.
         upper: f64,
     },
-    /// A mimic joint follows a joint that is not there.
+    /// A mimic joint follows a joint that does not exist.
     #[error("it mimics joint \"{target}\", which does not exist{}", proposal(near))]
     MimicTarget {
         /// The name.
         target: String,
-        /// Joint names like it, nearest first.
+        /// Similar joint names, nearest first.
         near: Vec<String>,
     },
     /// A mimic joint follows a joint that cannot move.
@@ -150,18 +150,18 @@ pub enum UrdfProblem {
         /// The fixed joint.
         target: String,
     },
-    /// Mimic joints follow each other in a ring, or one follows itself.
+    /// Mimic joints follow each other in a cycle, or one follows itself.
     #[error("it mimics itself: {}", path.join(" follows "))]
     MimicCycle {
-        /// The joints of the ring; first and last are the same.
+        /// The joints of the cycle; first and last are the same.
         path: Vec<String>,
     },
-    /// A link hangs on two joints.
+    /// A link is the child of two joints.
     #[error("it is the child of joints \"{first}\" and \"{second}\"; loops cannot be modelled, cut one")]
     TwoParents {
         /// The joint that comes first in the file.
         first: String,
-        /// The other.
+        /// The other joint.
         second: String,
     },
     /// Joints lead from a link back to itself.
@@ -170,10 +170,10 @@ pub enum UrdfProblem {
         /// The joints of the cycle.
         joints: Vec<String>,
     },
-    /// A `<geometry>` without a shape that is known.
+    /// A `<geometry>` has no known shape.
     #[error("its collision geometry has no shape; shapes are box, sphere, cylinder, capsule and mesh")]
     UnknownShape,
-    /// A length below zero.
+    /// A length is negative.
     #[error("{attribute}: {value} is negative; lengths are not")]
     NegativeSize {
         /// The attribute.
@@ -181,7 +181,7 @@ pub enum UrdfProblem {
         /// The length, in metres.
         value: f64,
     },
-    /// A mass below zero.
+    /// A mass is negative.
     #[error("mass.value: {mass} is negative; masses are not")]
     NegativeMass {
         /// The mass, in kilograms.

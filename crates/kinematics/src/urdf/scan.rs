@@ -1,8 +1,8 @@
-//! Refuses texts that an XML reader would take very long to read.
+//! Refuses texts that would take an XML reader very long.
 
 use super::problem::{MOST_ATTRIBUTES, UrdfProblem};
 
-/// Looks for declarations of entities and for tags of very many attributes. The text is without comments.
+/// Looks for entity declarations and for tags with very many attributes. The text must not contain comments.
 pub(super) fn check(text: &str) -> Result<(), UrdfProblem> {
     let line = |at: usize| 1 + text[..at].matches('\n').count();
     if let Some(at) = text.find("<!ENTITY") {
@@ -23,7 +23,7 @@ pub(super) fn check(text: &str) -> Result<(), UrdfProblem> {
     Ok(())
 }
 
-/// The length of the tag that a text begins with.
+/// The length of the tag at the beginning of a text.
 fn tag(text: &str, line: impl Fn() -> usize) -> Result<usize, UrdfProblem> {
     let (mut quote, mut attributes) = (None, 0);
     for (at, byte) in text.bytes().enumerate() {
@@ -43,7 +43,7 @@ fn tag(text: &str, line: impl Fn() -> usize) -> Result<usize, UrdfProblem> {
     Ok(text.len())
 }
 
-/// The length of a text up to the end of a mark.
+/// The length of a text through the end of a mark.
 fn through(text: &str, mark: &str) -> usize {
     text.find(mark).map_or(text.len(), |at| at + mark.len())
 }

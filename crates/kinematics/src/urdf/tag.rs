@@ -6,7 +6,7 @@ use super::{
 };
 use crate::KinematicsError;
 
-/// A tag inside a link or joint, and whose it is.
+/// A tag inside a link or joint, with its owner.
 #[derive(Clone, Copy)]
 pub(crate) struct Tag<'a> {
     pub(crate) node: Node<'a, 'a>,
@@ -18,7 +18,7 @@ impl Tag<'_> {
         KinematicsError::urdf(self.owner.clone(), problem)
     }
 
-    /// The N numbers of an attribute, or `None` where the attribute is missing. `name` is `tag.attribute`.
+    /// The N numbers of an attribute, or `None` if the attribute is missing. `name` is `tag.attribute`.
     pub(crate) fn numbers<const N: usize>(&self, name: &'static str) -> Result<Option<[f64; N]>, KinematicsError> {
         let Some(text) = self.node.attribute(attribute_of(name)) else { return Ok(None) };
         let numbers: Vec<f64> = text
@@ -31,19 +31,19 @@ impl Tag<'_> {
         Ok(Some(numbers))
     }
 
-    /// [`Tag::numbers`] that are lengths, angles or factors, and so must be bounded.
+    /// [`Tag::numbers`] for lengths, angles or factors, which must be bounded.
     pub(crate) fn bounded<const N: usize>(&self, name: &'static str) -> Result<Option<[f64; N]>, KinematicsError> {
         let numbers = self.numbers::<N>(name)?;
         let checked = numbers.map(|numbers| number::each(name, numbers, bounded)).transpose();
         checked.map_err(|problem| self.error(problem))
     }
 
-    /// The single number of an attribute, or `None` where the attribute is missing. `name` is `tag.attribute`.
+    /// The single number of an attribute, or `None` if the attribute is missing. `name` is `tag.attribute`.
     pub(crate) fn number(&self, name: &'static str) -> Result<Option<f64>, KinematicsError> {
         Ok(self.numbers::<1>(name)?.map(|[number]| number))
     }
 
-    /// An attribute that must be there. `name` is `tag.attribute`.
+    /// A required attribute. `name` is `tag.attribute`.
     pub(crate) fn text(&self, name: &'static str) -> Result<String, KinematicsError> {
         let text = self.node.attribute(attribute_of(name));
         text.map(str::to_owned).ok_or_else(|| self.error(UrdfProblem::MissingAttribute { attribute: name }))
@@ -55,7 +55,7 @@ impl Tag<'_> {
     }
 }
 
-/// The child elements of this name; elements of a foreign name space do not count.
+/// The child elements of this name; elements of a foreign namespace do not count.
 pub(crate) fn children<'a>(node: Node<'a, 'a>, tag: &'static str) -> impl Iterator<Item = Node<'a, 'a>> {
     let space = node.tag_name().namespace();
     node.children().filter(move |child| child.tag_name().name() == tag && child.tag_name().namespace() == space)

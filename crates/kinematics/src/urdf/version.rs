@@ -1,7 +1,7 @@
 use super::{Element, UrdfProblem};
 use crate::KinematicsError;
 
-/// The URDF version, which decides what two tags mean.
+/// The URDF version, on which the meaning of two tags depends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Version {
     V1_0,
@@ -10,7 +10,7 @@ pub(super) enum Version {
 }
 
 impl Version {
-    /// The version that `<robot>` gives, 1.0 where it gives none.
+    /// The version given by `<robot>`, 1.0 by default.
     pub(super) fn of(given: Option<&str>) -> Result<Self, KinematicsError> {
         match given.map(str::trim) {
             None | Some("1" | "1.0") => Ok(Version::V1_0),

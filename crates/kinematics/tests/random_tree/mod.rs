@@ -21,7 +21,7 @@ pub(crate) struct Limb {
     axis: [f64; 3],
     xyz: [f64; 3],
     rpy: [f64; 3],
-    /// The limb to follow, multiplier and offset.
+    /// The followed limb, multiplier and offset.
     mimic: Option<(usize, f64, f64)>,
 }
 
@@ -96,7 +96,7 @@ impl RandomTree {
                 write!(text, r#"<mimic joint="j{target}" multiplier="{multiplier:?}" offset="{offset:?}"/>"#)
                     .expect("a string takes any text");
             }
-            // Links of different masses, with centres off their frames.
+            // Links with different masses and centres off their frames.
             let mass = 0.5 + i as f64;
             write!(
                 text,
@@ -123,7 +123,7 @@ impl RandomTree {
         }
     }
 
-    /// The coordinate that moves a limb in the end.
+    /// The coordinate that ultimately moves a limb.
     pub(crate) fn coordinate_of(&self, limb: usize) -> Option<usize> {
         match self.limbs[limb].mimic {
             Some((target, ..)) if self.limbs[limb].kind != Kind::Fixed => self.coordinate_of(target),

@@ -2,7 +2,7 @@
 use kinematics::{MeshShape, RobotModel};
 use nalgebra::Point3;
 
-/// Link "a" with one shape, link "b" with another; "b" slides away along x, past a link without a shape.
+/// Link "a" with one shape, link "b" with another; "b" slides along x, past a link without a shape.
 pub(crate) fn two_shapes(first: &str, second: &str) -> RobotModel {
     let collision = |shape: &str| format!("<collision><geometry>{shape}</geometry></collision>");
     RobotModel::from_urdf(&format!(
@@ -17,7 +17,7 @@ pub(crate) fn two_shapes(first: &str, second: &str) -> RobotModel {
     .unwrap()
 }
 
-/// A cube of half edge 1, by triangles.
+/// A cube with half edge 1, as triangles.
 fn cube() -> (Vec<Point3<f64>>, Vec<[u32; 3]>) {
     let corner = |i: u32| Point3::from([i & 1, (i >> 1) & 1, i >> 2].map(|bit| 2.0 * f64::from(bit) - 1.0));
     let squares = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];

@@ -5,15 +5,15 @@ use crate::field::rows::Rows;
 use crate::field::{DIRECTION_ROWS, Direction, Field, Layout};
 use crate::settings::Settings;
 
-/// What the learning rates are floored by before their logarithm.
+/// Lower bound on the learning rates before taking their logarithm.
 const ALPHA_FLOOR: f64 = 1e-10;
 
-/// Weight and number of samples that a new field's statistics start with.
+/// Initial weight and number of samples in a new field's statistics.
 const NEXT_TO_NOTHING: f64 = 1e-10;
 
 impl Field {
-    /// A field at the normalised sample (x, y), shaped by the parameters or by its nearest neighbour `template`: it
-    /// takes over M, the learning rates, the mean target and the number of directions, nothing else.
+    /// A field at the normalised sample (x, y), with the shape of the parameters or of its nearest neighbour
+    /// `template`. It copies M, the learning rates, the mean target and the number of directions, and nothing else.
     pub(crate) fn new(settings: &Settings, x: &[f64], y: f64, template: Option<&Field>) -> Self {
         let (n, layout) = (settings.n_in, Layout::new(settings, settings.width));
         let mut field = Field {
@@ -26,7 +26,7 @@ impl Field {
         };
         field.rows[..n].copy_from_slice(&x[..n]);
         if let Some(other) = template {
-            // M and the learning rates are neighbours in the buffer.
+            // M and the learning rates are adjacent in the buffer.
             let shape = 2 * layout.width..2 * layout.width + 2 * layout.metric;
             field.rows[shape.clone()].copy_from_slice(&other.rows[shape]);
         } else {
@@ -46,7 +46,7 @@ impl Field {
         field
     }
 
-    /// Appends a direction that has already aged by the sample that called for it.
+    /// Appends a direction that has already aged by the sample that required it.
     pub(crate) fn grow(&mut self, settings: &Settings) {
         let p = &settings.params;
         self.add_direction(settings, 1.0, p.tau_lambda * p.init_lambda + p.final_lambda * (1.0 - p.tau_lambda));

@@ -1,7 +1,7 @@
-//! The rows of a field, and how its scalars meet them.
+//! The rows of a field, and their arithmetic with its scalars.
 //!
 //! The learning rules are written once, over [`Number`] for a field's scalars and [`Element`] for its rows, and run in
-//! three ways that agree bit for bit because they do the same operations in the same order:
+//! three ways, which agree bit for bit because they perform the same operations in the same order:
 //!
 //! | scalars | elements of rows | |
 //! |---|---|---|
@@ -18,7 +18,7 @@ use pulp::Simd;
 
 /// An element of the rows of a field whose scalars are `T`.
 pub(crate) trait Element<T: Number>: Number + Mul<T, Output = Self> {
-    /// The scalar, for as many elements as there are.
+    /// Repeats the scalar for all elements.
     fn spread(token: Self::Token, value: T) -> Self;
     fn spread_mask(token: Self::Token, mask: T::Mask) -> Self::Mask;
     /// aᵀb of rows.
@@ -46,7 +46,7 @@ impl Element<f64> for f64 {
         mask
     }
 
-    /// Rows are 1, 2, 4 or a multiple of 8 long. The halving order is what vector instructions do.
+    /// Rows have 1, 2, 4 or a multiple of 8 elements. The sum is halved in the order of vector instructions.
     #[inline(always)]
     fn dot((): (), a: &[f64], b: &[f64]) -> f64 {
         match a.len() {
@@ -90,7 +90,7 @@ impl<S: Simd> Element<f64> for Register<S> {
             return f64::dot((), a, b);
         }
         let (a, b) = (Self::elements(a), Self::elements(b));
-        // Eight accumulators, whatever the register.
+        // Eight accumulators, whatever the register width.
         let step = if S::F64_LANES == 4 && a.len() > 1 { 2 } else { 1 };
         let mut sum = Self::of(simd, a[0]) * Self::of(simd, b[0]);
         for i in (step..a.len()).step_by(step) {
@@ -112,8 +112,8 @@ impl<S: Simd> Element<f64> for Register<S> {
     }
 }
 
-/// The same dimension of several fields: a row has as many numbers a dimension as there are lanes. It has up to eight
-/// dimensions or a multiple of eight.
+/// The same dimension of several fields: for each dimension, a row has as many numbers as there are lanes. It has up to
+/// eight dimensions or a multiple of eight.
 impl<S: Simd> Element<Register<S>> for Register<S> {
     #[inline(always)]
     fn spread(_: S, value: Self) -> Self {
@@ -125,7 +125,7 @@ impl<S: Simd> Element<Register<S>> for Register<S> {
         mask
     }
 
-    /// In each lane, the order of the sum over a padded row.
+    /// In each lane, the sum has the order of that over a padded row.
     #[inline(always)]
     fn dot(simd: S, a: &[f64], b: &[f64]) -> Self {
         let (a, b) = (Self::elements(a), Self::elements(b));

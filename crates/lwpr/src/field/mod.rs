@@ -9,7 +9,7 @@ use crate::Metric;
 use crate::field::rows::Rows;
 use crate::settings::Settings;
 
-/// One direction of the projection regression: its scalars. Its vectors are rows of the field.
+/// The scalars of one direction of the projection regression. Its vectors are rows of the field.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Direction<T = f64> {
     /// Regression coefficient along the direction.
@@ -34,29 +34,29 @@ pub(crate) struct Direction<T = f64> {
 pub(crate) struct Field<T = f64> {
     pub(crate) beta0: T,
     pub(crate) sum_e2: T,
-    /// Σ w² s²/Σ w s² over all directions: the degrees of freedom that the regression has used up.
+    /// Σ w² s²/Σ w s² over all directions: the degrees of freedom used by the regression.
     pub(crate) degrees_of_freedom: T,
     /// 1 once the field has learnt enough to predict, 0 before.
     pub(crate) trust: T,
     pub(crate) directions: Vec<Direction<T>>,
-    /// Centre; mean; M with D = MᵀM (its diagonal, or its columns); learning rates; with meta learning their logarithms
-    /// and memory; then for each direction Σ w t x, Σ w s x, U, P.
+    /// Centre; mean; M with D = MᵀM (its diagonal, or its columns); learning rates; with meta learning, their
+    /// logarithms and memory; then for each direction Σ w t x, Σ w s x, U, P.
     pub(crate) rows: Rows,
 }
 
-/// Where the rows of a field are; a row has `width` numbers: those of the padded inputs, or of
-/// several fields side by side.
+/// Positions of the rows of a field. A row has `width` numbers: those of the padded inputs, or of several fields side
+/// by side.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Layout {
     pub(crate) n_in: usize,
     pub(crate) width: usize,
     /// Length of M.
     pub(crate) metric: usize,
-    /// Length of the blocks that only meta learning has.
+    /// Length of the blocks that exist only with meta learning.
     pub(crate) meta: usize,
 }
 
-/// The rows of M, its learning rates, and with meta learning their logarithms and memory.
+/// The rows of M, its learning rates, and with meta learning, their logarithms and memory.
 pub(crate) struct MetricRows<'a> {
     pub(crate) m: &'a mut [f64],
     pub(crate) alpha: &'a mut [f64],
@@ -72,40 +72,40 @@ pub(crate) struct DirectionRows<'a> {
     pub(crate) p: &'a mut [f64],
 }
 
-/// Rows that a direction takes.
+/// Number of rows per direction.
 pub(crate) const DIRECTION_ROWS: usize = 4;
 
 impl Layout {
-    /// `width` is passed apart so that it can be a constant.
+    /// `width` is a separate argument so that it can be a constant.
     #[inline(always)]
     pub(crate) fn new(settings: &Settings, width: usize) -> Self {
-        // Rows of two are neither padded nor shared by fields: then all is a constant.
+        // Rows of two are neither padded nor shared by fields, so that everything is a constant.
         let n_in = if width == 2 { 2 } else { settings.n_in };
         Layout::of(settings, width, (settings.params.metric, n_in))
     }
 
-    /// The same where more may be constants.
+    /// The same with more arguments that can be constants.
     #[inline(always)]
     pub(crate) fn of(settings: &Settings, width: usize, (metric, n_in): (Metric, usize)) -> Self {
         let metric = if metric == Metric::Full { n_in * width } else { width };
         Layout { n_in, width, metric, meta: if settings.meta() { metric } else { 0 } }
     }
 
-    /// Where the rows of the directions begin.
+    /// Position of the first row of the directions.
     #[inline(always)]
     pub(crate) fn directions(self) -> usize {
         2 * self.width + 2 * self.metric + 2 * self.meta
     }
 }
 
-/// All directions. With two inputs there are two, from birth on, which the compiler knows.
+/// All directions. With two inputs there are always two, which the compiler can use.
 #[inline(always)]
 pub(crate) fn known_directions<T>(directions: &mut [Direction<T>], layout: Layout) -> &mut [Direction<T>] {
     if layout.n_in == 2 { &mut directions[..2] } else { directions }
 }
 
 impl<T> Field<T> {
-    /// The metric's rows by name.
+    /// The rows of the metric, by name.
     #[inline(always)]
     pub(crate) fn metric_rows(&mut self, layout: Layout) -> MetricRows<'_> {
         let rest = &mut self.rows[2 * layout.width..];
@@ -115,7 +115,7 @@ impl<T> Field<T> {
         MetricRows { m, alpha, log_alpha, memory: &mut rest[..layout.meta] }
     }
 
-    /// Every direction with its rows.
+    /// Each direction with its rows.
     #[inline(always)]
     pub(crate) fn directions_mut(
         &mut self,
@@ -133,7 +133,7 @@ impl<T> Field<T> {
 }
 
 impl Field {
-    /// How many directions take part in predictions: the last only once it has seen enough.
+    /// Number of directions used in predictions; the last is used only once it has seen enough samples.
     pub(crate) fn n_usable(&self, n_in: usize) -> usize {
         let r = self.directions.len();
         if self.directions[r - 1].n_data > 2.0 * n_in as f64 { r } else { r - 1 }

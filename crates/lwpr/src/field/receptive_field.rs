@@ -39,12 +39,13 @@ impl<'a> ReceptiveField<'a> {
         self.field.directions.len()
     }
 
-    /// Effective number of samples learnt (older ones are partly forgotten).
+    /// Effective number of learnt samples (older ones are partly forgotten).
     pub fn n_data(&self) -> f64 {
         self.field.directions[0].n_data
     }
 
-    /// Whether it has learnt enough (more than 2 `n_in` samples) to take part in predictions.
+    /// Whether the field has learnt enough (more than 2 `n_in` samples) to take part in
+    /// predictions.
     pub fn is_trustworthy(&self) -> bool {
         self.field.is_trustworthy()
     }

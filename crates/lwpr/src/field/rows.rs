@@ -2,13 +2,13 @@
 
 use std::ops::{Deref, DerefMut};
 
-/// Bytes that the processor fetches together. A register loaded across the end of a line takes twice as long.
+/// Size of a cache line in bytes. Loading a register across the end of a line takes twice as long.
 const LINE: usize = 64;
 
-/// A fixed number of `f64` on the heap that start at a cache line.
+/// A fixed number of `f64` on the heap, aligned to a cache line.
 #[derive(Default)]
 pub(crate) struct Rows {
-    /// The numbers, somewhere in it.
+    /// Contains the numbers at an offset.
     buffer: Vec<f64>,
     start: usize,
     len: usize,

@@ -1,4 +1,4 @@
-//! Activation of the fields by a sample.
+//! Activations of the fields for a sample.
 
 use lanes::{LANES, Lanes, Number, Register, groups_of};
 use pulp::Simd;
@@ -19,7 +19,7 @@ pub(crate) struct ActivatedField {
     pub(crate) activation: Activation<f64>,
 }
 
-/// Eight squared distances side by side, and the activations that follow.
+/// Eight squared distances side by side, and the resulting activations.
 #[derive(Debug, Clone, Copy, Default)]
 #[repr(align(64))]
 struct Group {
@@ -28,7 +28,7 @@ struct Group {
 }
 
 impl Group {
-    /// Takes in the distances of part `part`. Returns the activations.
+    /// Stores the distances of part `part`. Returns the activations.
     #[inline(always)]
     fn activate<S: Simd>(&mut self, kernel: Kernel, q: Register<S>, part: usize) -> Register<S> {
         let activation = kernel.at(q);
@@ -45,8 +45,8 @@ impl Group {
 pub(crate) struct ActivatedFields {
     len: usize,
     fields: Vec<usize>,
-    /// Distances and activations: of a narrow model's fields where they have their place among all, so that nothing is moved
-    /// about between vector registers; of other models' in list order.
+    /// Distances and activations. In a narrow model each is at its field's position among all fields, so that nothing moves
+    /// between vector registers; in other models they are in list order.
     groups: Vec<Group>,
     among_all: bool,
     /// The strongest activation, unless it is beyond the radius.
@@ -54,8 +54,8 @@ pub(crate) struct ActivatedFields {
 }
 
 impl ActivatedFields {
-    /// Looks for the fields closer than the radius to the padded, normalised sample `x`; those whose distance is `known`
-    /// are not compared again, for which there must be no table.
+    /// Finds the fields closer than the radius to the padded, normalised sample `x`. Those whose distance is `known` are not
+    /// compared again, which requires that there is no table.
     #[inline(always)]
     pub(crate) fn find<S: Simd>(
         &mut self,
@@ -96,8 +96,8 @@ impl ActivatedFields {
         self.activate(simd, settings.params.kernel);
     }
 
-    /// [`find`](Self::find) in the table of a narrow model. With two
-    /// dimensions, which the compiler then knows, arithmetic is shorter than loops around it.
+    /// [`find`](Self::find) in the table of a narrow model. Two dimensions are a constant for the compiler, because then the
+    /// arithmetic is shorter than loops around it.
     #[inline(always)]
     fn search_table<S: Simd>(&mut self, simd: S, settings: &Settings, table: &ActivationTable, sample: (&[f64], f64)) {
         let kernel = settings.params.kernel;
@@ -134,7 +134,7 @@ impl ActivatedFields {
         self.finish_table(largest);
     }
 
-    /// Takes over what is known of a sample. Returns with how many fields it has been compared.
+    /// Copies what is known about a sample. Returns the number of fields it has been compared with.
     #[inline(always)]
     fn recall(&mut self, known: &KnownDistances) -> usize {
         for (&field, &q) in known.fields.iter().zip(&known.q) {
@@ -157,7 +157,7 @@ impl ActivatedFields {
         }
     }
 
-    /// Makes field `field` the only one.
+    /// Makes `field` the only activated field.
     #[inline(always)]
     pub(crate) fn set_single(&mut self, field: usize, q: f64, activation: Activation<f64>) {
         self.clear(1);
@@ -180,7 +180,8 @@ impl ActivatedFields {
         self.groups.resize(n_groups, Group::default());
     }
 
-    /// Keeps field and distance if it is within the radius, without a branch: which fields are near cannot be predicted.
+    /// Keeps a field and its distance if it is within the radius, without a branch, because which fields are near is
+    /// unpredictable.
     #[inline(always)]
     fn add(&mut self, field: usize, q: f64, squared_radius: f64) {
         self.fields[self.len] = field;
@@ -188,13 +189,13 @@ impl ActivatedFields {
         self.len += usize::from(q < squared_radius);
     }
 
-    /// Distances of the fields added become activations, several at a time.
+    /// Converts the distances of the added fields to activations, several at a time.
     #[inline(always)]
     fn activate<S: Simd>(&mut self, simd: S, kernel: Kernel) {
         let mut largest = Register::splat(simd, 0.0);
         for (g, group) in self.groups[..groups_of(self.len)].iter_mut().enumerate() {
             for (lane, q) in group.q.iter_mut().enumerate() {
-                // What lies beyond the end is infinitely far away.
+                // Lanes beyond the end are infinitely far away.
                 *q = if g * LANES + lane < self.len { *q } else { f64::INFINITY };
             }
             for part in 0..Register::<S>::parts() {
@@ -237,7 +238,7 @@ impl ActivatedFields {
         largest
     }
 
-    /// All fields of a narrow model have been added.
+    /// To be called when all fields of a narrow model have been added.
     #[inline(always)]
     fn finish_table<S: Simd>(&mut self, largest: Register<S>) {
         (self.among_all, self.largest) = (true, largest.largest());
@@ -249,7 +250,7 @@ impl ActivatedFields {
         self.largest <= settings.params.w_gen
     }
 
-    /// Field, squared distance and activation of each.
+    /// Field, squared distance and activation of each activated field.
     #[inline(always)]
     pub(crate) fn iter(&self) -> impl Iterator<Item = ActivatedField> {
         self.fields[..self.len].iter().enumerate().map(|(place, &field)| {
@@ -262,7 +263,7 @@ impl ActivatedFields {
     }
 }
 
-/// Squared distance q = |M(x − c)|² with diagonal metric. `t` is a row of scratch.
+/// Squared distance q = |M(x − c)|² with diagonal metric. `t` is scratch space for a row.
 #[inline(always)]
 fn diagonal_distance<S: Simd>(simd: S, field: &Field, x: &[f64], t: &mut [f64]) -> f64 {
     let width = x.len();
@@ -276,7 +277,7 @@ fn diagonal_distance<S: Simd>(simd: S, field: &Field, x: &[f64], t: &mut [f64]) 
     <Register<S> as Element<f64>>::dot(simd, t, t)
 }
 
-/// Squared distance q = (x − c)ᵀD(x − c) with full metric: |M(x − c)|². `t` is a row of scratch.
+/// Squared distance q = (x − c)ᵀD(x − c) = |M(x − c)|² with full metric. `t` is scratch space for a row.
 #[inline(always)]
 fn full_distance(field: &Field, layout: Layout, x: &[f64], t: &mut [f64]) -> f64 {
     t.fill(0.0);

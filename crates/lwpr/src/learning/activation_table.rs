@@ -7,17 +7,17 @@ use crate::Metric;
 use crate::field::Field;
 use crate::settings::{Settings, padded};
 
-/// Centres and metrics of all fields, in blocks of eight: for each dimension eight centres, then, eight by eight, what
-/// decides about distances ([`distance`]).
+/// Centres and metrics of all fields, in blocks of eight: for each dimension eight centres, then, in groups of eight, the
+/// numbers that determine distances ([`distance`]).
 ///
-/// With many dimensions the table is empty: M is read from the fields themselves.
+/// With many dimensions the table is empty, and M is read from the fields themselves.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct ActivationTable {
     pub(super) blocks: Vec<Lanes>,
 }
 
 impl ActivationTable {
-    /// Puts field `k` in, as a new last one or in place of the old.
+    /// Stores field `k`, as a new last one or replacing the old one.
     pub(crate) fn set(&mut self, settings: &Settings, k: usize, field: &Field) {
         if !settings.narrow() {
             return;
@@ -36,7 +36,7 @@ impl ActivationTable {
         self.set_metric((settings.params.metric, n), k, field.m(settings));
     }
 
-    /// Takes over M of field `k` after it has learnt. The shape is passed so that it can be a constant.
+    /// Copies M of field `k` after it has learnt. The shape is an argument so that it can be a constant.
     #[inline(always)]
     pub(crate) fn set_metric(&mut self, (metric, n): (Metric, usize), k: usize, m: &[f64]) {
         let (lane, size) = (k % LANES, n + metric.len(n));
@@ -55,7 +55,7 @@ impl ActivationTable {
         }
     }
 
-    /// Forgets the last field, number `k`.
+    /// Removes the last field, number `k`.
     pub(crate) fn pop(&mut self, settings: &Settings, k: usize) {
         if !settings.narrow() {
             return;
@@ -70,8 +70,8 @@ impl ActivationTable {
     }
 }
 
-/// q = |M(x − c)|² of eight pairs of a sample and a field side by side, from the eight D of each dimension, or with a full
-/// metric from the eight numbers of each element in the upper triangle of M, row after row.
+/// q = |M(x − c)|² of eight pairs of a sample and a field side by side, from the eight values of D for each dimension, or
+/// with a full metric from the eight values of each element in the upper triangle of M, row by row.
 #[inline(always)]
 pub(super) fn distance<S: Simd>(
     simd: S,

@@ -1,9 +1,9 @@
 //! Exact training on many samples, field by field.
 //!
-//! A field learns from the samples and its own past alone. So each may run through a whole [`Chunk`] before the next one
-//! starts, its state at hand in the processor's nearest memory, or several may run side by side in the lanes of vector
-//! registers ([`LaneBlock`]). The fields meet only where a sample turns out to activate none of them: then one is born,
-//! shaped by the strongest as it was at that moment, which is found by running that one again.
+//! A field depends only on the samples and its own past. Each field can therefore process a whole [`Chunk`] before the next
+//! one starts, with its state in the fastest cache, or several can run side by side in the lanes of vector registers
+//! ([`LaneBlock`]). Fields interact only if a sample activates none of them. Then a new field is created with the shape
+//! that the strongest one had at that moment, which is found by running that one again.
 
 use std::cmp::Reverse;
 
@@ -28,26 +28,26 @@ pub(crate) struct BatchTraining<'a> {
     pub(crate) scratch: &'a mut BatchScratch,
 }
 
-/// Memory of training one output.
+/// Memory for training one output.
 #[derive(Debug, Clone)]
 pub(crate) struct BatchScratch {
     strongest: Vec<Strongest>,
-    /// The fields as they were at the start of the chunk, or at their birth in it, and where that was.
+    /// The fields at the start of the chunk, or at their creation within it, and the position of that.
     before: Vec<Field>,
     start: Vec<usize>,
-    /// How many samples each field learnt from in the chunk before: the busiest go first, so that no lane is left with a
-    /// long one at the end.
+    /// Number of samples from which each field learnt in the previous chunk. The busiest fields go first, so that no lane
+    /// is left with a long one at the end.
     load: Vec<usize>,
     workspace: Workspace,
     activated: ActivatedFields,
 }
 
-/// A sample needs a field, but there are enough.
+/// A sample needs a field, but the limit has been reached.
 pub(crate) struct TooMany {
     pub(crate) sample: usize,
 }
 
-/// State of a lane: a field, and the sample it learns from next.
+/// State of a lane: a field, and the next sample from which it learns.
 #[derive(Debug, Clone, Copy)]
 struct Task {
     field: usize,
@@ -68,7 +68,7 @@ impl BatchScratch {
 }
 
 impl pulp::WithSimd for BatchTraining<'_> {
-    /// The number of fields born.
+    /// The number of new fields.
     type Output = Result<usize, TooMany>;
 
     #[inline(always)]
@@ -102,8 +102,8 @@ impl BatchTraining<'_> {
         Ok(self.sub_model.fields.len() - n_fields)
     }
 
-    /// Trains fields with equally many directions side by side. Lanes that run out of samples take the next field;
-    /// stragglers finish alone.
+    /// Trains fields with the same number of directions side by side. Lanes that run out of samples take the next field;
+    /// the last ones finish alone.
     #[inline(always)]
     fn train_group<S: Simd>(&mut self, simd: S, group: &[(usize, Reverse<usize>, usize)]) {
         let mut queue = group.iter().map(|&(_, _, k)| k);
@@ -150,8 +150,8 @@ impl BatchTraining<'_> {
         queue.for_each(|k| self.train_rest(simd, k, 0));
     }
 
-    /// Fills a lane with the next field that has anything to learn here. It seldom happens: a separate function keeps stack
-    /// frames small where nothing is optimised.
+    /// Fills a lane with the next field that has something to learn here. It is rarely called, and a separate function
+    /// keeps stack frames small in unoptimised builds.
     #[inline(always)]
     fn next_field<S: Simd>(
         &mut self,
@@ -162,7 +162,7 @@ impl BatchTraining<'_> {
         block.simd().vectorize(NextField { training: self, block, lane, queue })
     }
 
-    /// Gives a lane the next sample that its field learns from.
+    /// Gives a lane the next sample from which its field learns.
     #[inline(always)]
     fn next_sample<S: Simd>(&mut self, block: &mut LaneBlock<S>, lane: usize, k: usize, start: usize) -> Option<Task> {
         let (sample, q) = self.find(block.simd(), block.shape(lane), k, (start, self.chunk.n))?;
@@ -170,7 +170,7 @@ impl BatchTraining<'_> {
         Some(Task { field: k, sample })
     }
 
-    /// The next sample that field `k` learns from; takes note of those that are only near.
+    /// The next sample from which field `k` learns; records samples that are only near.
     #[inline(always)]
     fn find<S: Simd>(
         &mut self,
@@ -195,7 +195,7 @@ impl BatchTraining<'_> {
         self.scratch.load[field] += 1;
     }
 
-    /// Field `k` learns alone from the samples from `start` on.
+    /// Field `k` learns from the samples from `start` on, without other fields.
     #[inline(always)]
     fn train_rest<S: Simd>(&mut self, simd: S, k: usize, start: usize) {
         let mut field = std::mem::take(&mut self.sub_model.fields[k]);
@@ -207,7 +207,7 @@ impl BatchTraining<'_> {
         simd.vectorize(Alone { training: self, field, k, start, end });
     }
 
-    /// Makes a field at every sample that has activated none enough.
+    /// Creates a field at each sample that has not activated any field enough.
     fn make_fields<S: Simd>(&mut self, simd: S) -> Result<(), TooMany> {
         let limit = self.settings.params.max_receptive_fields.unwrap_or(usize::MAX);
         let mut next = 0;
@@ -229,7 +229,7 @@ impl BatchTraining<'_> {
         Ok(())
     }
 
-    /// The strongest field at `sample`, as it was after learning from that sample, if it is fit for a template.
+    /// The strongest field at `sample`, in its state after learning from that sample, if it is suitable as a template.
     fn template<S: Simd>(&mut self, simd: S, sample: usize) -> Option<Field> {
         let strongest = self.scratch.strongest[sample];
         if strongest.w <= 0.1 * self.settings.params.w_gen {

@@ -1,4 +1,4 @@
-//! A stretch of samples that all fields of an output learn from, one field after the other.
+//! A range of samples from which all fields of an output learn, one field after the other.
 
 use lanes::{LANES, Lanes, Number, Register};
 use nalgebra::DVectorView;
@@ -14,26 +14,27 @@ pub(crate) struct Chunk {
     n_in: usize,
     width: usize,
     rows: Vec<f64>,
-    /// For each block of eight samples, one array a dimension; beyond the end everything is infinitely far away.
+    /// For each block of eight samples, one array per dimension; beyond the end everything is infinitely far away.
     blocks: Vec<Lanes>,
 }
 
-/// Most dimensions in which batches go field by field ([`Settings::side_by_side`]), and most numbers of a metric.
+/// Maximum dimension in which batches go field by field ([`Settings::side_by_side`]), and maximum number of values of a
+/// metric.
 const MOST: usize = 6;
 const MOST_ELEMENTS: usize = MOST * (MOST + 1) / 2;
 
-/// Where a field is and how wide it is.
+/// Centre and metric of a field.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Shape {
     kind: Metric,
     n_in: usize,
     centre: [f64; MOST],
-    /// The diagonal of D, or the upper triangle of M, row after row.
+    /// The diagonal of D, or the upper triangle of M, row by row.
     elements: [f64; MOST_ELEMENTS],
 }
 
 impl Shape {
-    /// The metric is yet to come.
+    /// The shape without its metric, which is set later.
     pub(crate) fn new(settings: &Settings, centre: &[f64]) -> Self {
         let n_in = settings.n_in;
         let mut shape =
@@ -42,7 +43,7 @@ impl Shape {
         shape
     }
 
-    /// Takes over M, given in rows of `width` dimensions; every `lanes`-th number belongs to this field.
+    /// Copies M, given in rows of `width` dimensions; every `lanes`-th number belongs to this field.
     #[inline(always)]
     pub(crate) fn set_metric(&mut self, m: &[f64], width: usize, lanes: usize) {
         match (self.kind, self.n_in) {
@@ -68,7 +69,7 @@ impl Shape {
         }
     }
 
-    /// Squared distances of the samples of part `part` of a block, summed as in the activation table.
+    /// Squared distances of the samples of part `part` of a block, summed in the order of the activation table.
     #[inline(always)]
     fn distance<S: Simd>(&self, simd: S, kind: Metric, block: &[Lanes], part: usize) -> Register<S> {
         let mut q = Register::splat(simd, 0.0);
@@ -92,7 +93,7 @@ impl Shape {
 }
 
 impl Chunk {
-    /// Takes in other samples, columns of length `n_in`.
+    /// Replaces the samples, columns of length `n_in`.
     pub(crate) fn fill<'a>(
         &mut self,
         settings: &Settings,
@@ -120,8 +121,8 @@ impl Chunk {
         &self.rows[sample * self.width..][..self.width]
     }
 
-    /// The first sample from `start` on, before `end`, closer than the radius, and its squared distance. The order of
-    /// the sum is the activation table's. Two dimensions are known to the compiler, as there.
+    /// The first sample from `start` on, before `end`, closer than the radius, and its squared distance. The sum has
+    /// the order of the activation table. As there, two dimensions are a constant for the compiler.
     #[inline(always)]
     pub(crate) fn find<S: Simd>(
         &self,

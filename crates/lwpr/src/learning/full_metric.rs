@@ -14,8 +14,8 @@ pub(crate) struct FullScratch<'a> {
     pub(crate) gram: &'a mut [f64],
 }
 
-/// Steps every element of the upper triangle. With t = M(x − c), ∂q/∂M_nm = 2 (x − c)_m t_n; the penalty's gradient needs
-/// MD = (M Mᵀ) M, whose columns come one at a time.
+/// Steps every element of the upper triangle. With t = M(x − c), ∂q/∂M_nm = 2 (x − c)_m t_n. The penalty's gradient needs
+/// MD = (M Mᵀ) M, which is computed column by column.
 #[inline(always)]
 pub(crate) fn full_step<T: Element<T>, E: Element<T>>(
     (scalar, token): (T::Token, E::Token),
@@ -34,7 +34,7 @@ pub(crate) fn full_step<T: Element<T>, E: Element<T>>(
             add_scaled::<T, E>(token, row, T::of(scalar, T::elements(column)[k]), column);
         }
     }
-    // Asked once, and not for every element.
+    // Tested once, not for every element.
     match step.rate {
         None => step_plainly::<T, E>((scalar, token), rows, step, dx, scratch),
         Some(rate) => step_meta::<T, E>((scalar, token), rows, (step, rate), dx, scratch),
@@ -55,7 +55,7 @@ fn penalty_column<T: Element<T>, E: Element<T>>(
     }
 }
 
-/// Plain steps. Below the diagonal the learning rate is zero, so that M stays zero there.
+/// Steps with fixed learning rates. Below the diagonal the rate is zero, so that M stays zero there.
 #[inline(always)]
 fn step_plainly<T: Element<T>, E: Element<T>>(
     (scalar, token): (T::Token, E::Token),
@@ -77,7 +77,7 @@ fn step_plainly<T: Element<T>, E: Element<T>>(
     }
 }
 
-/// Steps whose learning rates are learnt too.
+/// Steps with adaptive learning rates.
 #[inline(always)]
 fn step_meta<T: Element<T>, E: Element<T>>(
     (scalar, token): (T::Token, E::Token),
@@ -95,7 +95,7 @@ fn step_meta<T: Element<T>, E: Element<T>>(
         let mut rows = ElementRows::<T>::new(rows);
         for i in 0..=m {
             let element = T::of(scalar, rows.m[m * t.len() + i]);
-            // Row i of M squared, from the diagonal on, and the element itself once more.
+            // Squared row i of M, from the diagonal on, plus the squared element itself.
             let row = T::of(scalar, gram[i * t.len() + i]);
             let curvature = diagonal + row + element * element;
             let by = derivatives(step, dx, T::of(scalar, t[i]), T::of(scalar, penalty_column[i]), curvature);

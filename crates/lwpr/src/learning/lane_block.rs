@@ -1,4 +1,4 @@
-//! Fields side by side: one in each lane of a vector register.
+//! Fields side by side, one in each lane of a vector register.
 
 use lanes::{Number, Register};
 use pulp::Simd;
@@ -12,7 +12,7 @@ use crate::learning::rules::{SCRATCH_ROWS, Workspace, train};
 use crate::settings::Settings;
 use crate::settings::kernel::Activation;
 
-/// As many fields as a vector register has lanes, all with the same number of directions, and a sample for each.
+/// As many fields as a vector register has lanes, all with the same number of directions, with one sample for each.
 pub(crate) struct LaneBlock<S: Simd> {
     simd: S,
     field: Field<Register<S>>,
@@ -39,7 +39,7 @@ impl<T> Field<T> {
 }
 
 impl<S: Simd> LaneBlock<S> {
-    /// For fields of `n_directions`. Lanes that have not been filled hold something whose learning is harmless.
+    /// For fields with `n_directions`. Lanes that are not filled contain values whose training is harmless.
     pub(crate) fn new(simd: S, settings: &Settings, n_directions: usize) -> Self {
         let one = Register::splat(simd, 1.0);
         let width = settings.n_in * S::F64_LANES;
@@ -92,7 +92,7 @@ impl<S: Simd> LaneBlock<S> {
         }
     }
 
-    /// Takes the field of a lane out again.
+    /// Moves the field of a lane out again.
     pub(crate) fn store(&mut self, settings: &Settings, lane: usize, field: &mut Field) {
         for (ours, theirs) in self.field.numbers().zip(field.numbers()) {
             *theirs = ours.get(lane);
@@ -114,7 +114,7 @@ impl<S: Simd> LaneBlock<S> {
         shape
     }
 
-    /// Gives a lane the sample it learns from next.
+    /// Gives a lane the next sample from which it learns.
     #[inline(always)]
     pub(crate) fn set_sample(&mut self, lane: usize, chunk: &Chunk, sample: usize, y: f64, q: f64) {
         for (ours, x) in self.x.chunks_exact_mut(S::F64_LANES).zip(chunk.row(sample)) {
@@ -124,7 +124,7 @@ impl<S: Simd> LaneBlock<S> {
         self.q.set(lane, q);
     }
 
-    /// All lanes learn from their samples. Returns the activations, and which lanes call for another direction.
+    /// All lanes learn from their samples. Returns the activations, and the lanes that need another direction.
     #[inline(always)]
     pub(crate) fn train(&mut self, settings: &Settings) -> (Register<S>, Option<Register<S>>) {
         let simd = self.simd;
@@ -160,7 +160,7 @@ struct TrainLanes<'a, S: Simd, M, const N: usize> {
 }
 
 impl<S: Simd, M: metric::Shape, const N: usize> pulp::WithSimd for TrainLanes<'_, S, M, N> {
-    /// Non-zero in lanes that call for another direction.
+    /// Non-zero in lanes that need another direction.
     type Output = Option<Register<S>>;
 
     #[inline(always)]

@@ -1,18 +1,18 @@
-//! Distances that one pass over a batch has found, for the next: while no metric adapts they stay as they are.
+//! Distances that one pass over a batch found, for reuse in the next: they are constant as long as no metric adapts.
 
 use crate::MetricAdaptation;
 use crate::settings::Settings;
 
-/// Samples, times outputs, for which distances are remembered at most.
+/// Maximum number of samples, times outputs, whose distances are stored.
 const MOST: usize = 1 << 20;
 
-/// For each output and each sample of a batch the fields that it activates.
+/// For each output and each sample of a batch, the activated fields.
 #[derive(Debug)]
 pub(crate) struct Memory {
     outputs: Vec<Vec<KnownDistances>>,
 }
 
-/// The fields that a sample activates, among those that it has been compared with.
+/// The fields activated by a sample, among those to which it has been compared.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct KnownDistances {
     pub(super) fields: Vec<usize>,
@@ -21,8 +21,8 @@ pub(crate) struct KnownDistances {
 }
 
 impl Memory {
-    /// For as many passes over as many samples; `None` where metrics adapt, fields vanish, or finding the activated fields is
-    /// quick anyway.
+    /// For `passes` passes over `n_samples` samples; `None` if metrics adapt, if fields are removed, or if finding the
+    /// activated fields is fast anyway.
     pub(crate) fn new(settings: &Settings, n_samples: usize, passes: usize) -> Option<Self> {
         let stays = settings.params.adaptation == MetricAdaptation::Fixed && settings.params.w_prune == 1.0;
         let pays = passes > 1 && !settings.narrow() && n_samples.saturating_mul(settings.n_out) <= MOST;

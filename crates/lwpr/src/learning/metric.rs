@@ -11,9 +11,9 @@ use crate::settings::Settings;
 use crate::settings::kernel::Activation;
 use crate::{Metric, MetricAdaptation};
 
-/// The metric's shape, where the code for it is chosen when it is compiled.
+/// The metric's shape, if the code for it is selected at compile time.
 pub(crate) trait Shape: Default {
-    /// The shape, as parameters name it.
+    /// The shape, as named in the parameters.
     const METRIC: Metric;
 }
 
@@ -33,7 +33,7 @@ impl Shape for Full {
     const METRIC: Metric = Metric::Full;
 }
 
-/// Adapts M after the regression has absorbed a sample; x − c in `dx`.
+/// Adapts M after the regression has absorbed a sample; `dx` is x − c.
 #[inline(always)]
 pub(crate) fn update_metric<T: Element<T>, E: Element<T>, M: Shape>(
     tokens: (T::Token, E::Token),

@@ -7,12 +7,12 @@ use crate::learning::batch::{BatchScratch, BatchTraining};
 use crate::learning::chunk::Chunk;
 use crate::{Lwpr, LwprError};
 
-/// Shortest and longest chunk. Every birth of a field costs a second run of its neighbour over part of the chunk, every
-/// chunk costs something by itself: chunks grow while no field is born and shrink when one is.
+/// Shortest and longest chunk. Every new field costs a second run of its neighbour over part of the chunk, and every
+/// chunk has a fixed cost, so chunks grow while no field is created and shrink when one is.
 pub(crate) const SHORTEST: usize = 64;
 const LONGEST: usize = 1024;
 
-/// Memory of passes over a data set.
+/// Memory for passes over a data set.
 pub(crate) struct BatchFit {
     length: usize,
     chunk: Chunk,
@@ -51,7 +51,7 @@ impl BatchFit {
         Ok(())
     }
 
-    /// All outputs learn from a chunk, in parallel. Returns how many fields were born.
+    /// All outputs learn from a chunk, in parallel. Returns the number of new fields.
     fn learn(
         &mut self,
         model: &mut Lwpr,

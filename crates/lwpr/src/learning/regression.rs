@@ -6,7 +6,7 @@ use crate::field::element::Element;
 use crate::field::{Direction, DirectionRows, Field, Layout, known_directions};
 use crate::settings::Settings;
 
-/// A normalised sample, and how strongly it activates the field.
+/// A normalised sample, with its activation of the field.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Sample<'a, T> {
     pub(crate) x: &'a [f64],
@@ -14,7 +14,8 @@ pub(crate) struct Sample<'a, T> {
     pub(crate) w: T,
 }
 
-/// Σ w s² stays above this, so that it can divide: equal samples spread along no direction, and what was there is forgotten.
+/// Lower bound on Σ w s², which is a divisor: identical samples have no spread along any direction, and the earlier spread is
+/// forgotten.
 const LEAST_SPREAD: f64 = 1e-150;
 
 /// Quantities of an absorbed sample that the metric needs.
@@ -30,19 +31,19 @@ pub(crate) struct Absorbed<T: Number> {
     pub(crate) leverage: T,
     pub(crate) sum_p_h: T,
     pub(crate) sum_p2_r: T,
-    /// Mean squared leave-one-out errors' numerators and weights of the last direction but one, and of the last.
+    /// Numerators and weights of the mean squared leave-one-out error, for the last but one direction and for the last.
     pub(crate) errors: [(T, T); 2],
-    /// Whether the field has seen enough for its errors to count: about a hundred samples by default.
+    /// Whether the field has seen enough samples for its errors to count: about a hundred by default.
     pub(crate) settled: T::Mask,
 }
 
-/// Whether a direction has seen enough for derivatives. The library asks with the first direction's λ everywhere.
+/// Whether a direction has seen enough samples for derivatives. The C library uses the first direction's λ for all.
 #[inline(always)]
 pub(crate) fn settled<T: Number>(direction: &Direction<T>, lambda0: T) -> T::Mask {
     (direction.n_data * (lambda0.like(1.0) - lambda0)).above(lambda0.like(0.1))
 }
 
-/// Shifts the weighted means by the sample; `z` receives x − mean. Returns y − mean and 1/Σ w.
+/// Updates the weighted means with the sample; `z` receives x − mean. Returns y − mean and 1/Σ w.
 #[inline(always)]
 pub(crate) fn update_means<T: Number, E: Element<T>>(
     token: E::Token,
@@ -65,10 +66,10 @@ pub(crate) fn update_means<T: Number, E: Element<T>>(
     (sample.y - field.beta0, share)
 }
 
-/// Absorbs the centred sample (z, t) with weight `w`. `residual` enters as z; `fresh` is scratch.
+/// Absorbs the centred sample (z, t) with weight `w`. `residual` initially contains z; `fresh` is scratch.
 ///
-/// The directions' old loadings drive the statistics, the new ones (kept in `s`) the prediction and the metric; both
-/// run through the directions together, so that each direction's state is touched once.
+/// The directions' old loadings update the statistics; the new ones (stored in `s`) give the prediction and the metric's step. Both
+/// are computed in one loop over the directions, so that each direction's state is accessed once.
 #[inline(always)]
 pub(crate) fn update_regression<T: Number, E: Element<T>>(
     token: E::Token,
@@ -122,7 +123,8 @@ pub(crate) fn update_regression<T: Number, E: Element<T>>(
         if j + 1 < r {
             (prediction, sample.loo_error, sample.error_sum) = (next, loo_error, direction.sum_loo_error2);
         } else {
-            // A last direction that has seen little is trained, but not used. If it is the only one, its errors count all the same.
+            // A last direction that has seen few samples is trained, but not used. If it is the only one, its errors count
+            // nevertheless.
             prediction = next.or_else(last_counts, prediction);
             sample.loo_error = loo_error.or_else(last_counts, sample.loo_error);
             let errors = direction.sum_loo_error2.or_else(last_counts, sample.error_sum);
@@ -140,7 +142,7 @@ pub(crate) fn update_regression<T: Number, E: Element<T>>(
     sample
 }
 
-/// A direction's sums take in loading s and target t. Returns 1/Σ w s².
+/// Adds loading s and target t to a direction's sums. Returns 1/Σ w s².
 #[inline(always)]
 fn update_scalars<T: Number>(direction: &mut Direction<T>, (s, t): (T, T), w: T) -> T {
     let (lambda, ws) = (direction.lambda, w * s);
@@ -152,8 +154,8 @@ fn update_scalars<T: Number>(direction: &mut Direction<T>, (s, t): (T, T), w: T)
     inverse
 }
 
-/// A direction's U and P follow the sample's residual, from which the old P is then taken out. Given are λ, s, ws, wt and
-/// 1/Σ w s².
+/// Updates a direction's U and P from the sample's residual, then subtracts the old P from the residual. The arguments are λ, s,
+/// ws, wt and 1/Σ w s².
 #[inline(always)]
 fn update_rows<T: Number, E: Element<T>>(
     token: E::Token,
@@ -174,8 +176,7 @@ fn update_rows<T: Number, E: Element<T>>(
     }
 }
 
-/// U turns to where Σ w t x now points, if it points anywhere. Returns Uᵀx for the row `x`, whose sum need not wait for
-/// the norm.
+/// Turns U to the direction of Σ w t x, unless that is zero. Returns Uᵀx for the row `x`, whose sum need not wait for the norm.
 #[inline(always)]
 fn turn<T: Number, E: Element<T>>(token: E::Token, rows: &mut DirectionRows<'_>, x: &[f64]) -> T {
     let square = E::dot(token, rows.covariance, rows.covariance);
@@ -193,8 +194,8 @@ fn turn<T: Number, E: Element<T>>(token: E::Token, rows: &mut DirectionRows<'_>,
     s
 }
 
-/// Ages all directions. Returns where the last one still paid and has settled, so that another is worth adding; the
-/// caller adds it.
+/// Ages all directions. Returns the lanes in which the last direction still reduced the error and has settled, so that the caller
+/// should add another.
 #[inline(always)]
 pub(crate) fn age<T: Number>(
     directions: &mut [Direction<T>],

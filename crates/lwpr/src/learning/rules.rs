@@ -1,4 +1,4 @@
-//! One field learns from one sample, or several fields side by side from one each.
+//! One field learns from one sample, or several fields side by side from one sample each.
 
 use lanes::Register;
 use pulp::Simd;
@@ -15,7 +15,7 @@ use crate::field::{Field, Layout, known_directions};
 use crate::settings::Settings;
 use crate::settings::kernel::Activation;
 
-/// Rows of scratch that [`train`] needs.
+/// Number of scratch rows that [`train`] needs.
 pub(crate) const SCRATCH_ROWS: usize = 5;
 
 /// Scratch rows, and those of M Mᵀ for the full metric.
@@ -33,7 +33,7 @@ impl Workspace {
     }
 }
 
-/// Scratch rows of a length that the compiler knows, which it may keep in registers.
+/// Scratch rows of a length known at compile time, which the compiler may keep in registers.
 #[repr(align(64))]
 struct Scratch<const WIDTH: usize> {
     rows: [[f64; WIDTH]; SCRATCH_ROWS],
@@ -44,7 +44,7 @@ struct Scratch<const WIDTH: usize> {
 pub(crate) struct LearnFromOne<'a> {
     pub(crate) settings: &'a Settings,
     pub(crate) fields: &'a mut [Field],
-    /// The fields' metrics, where others look at them.
+    /// The table of the fields' metrics, if there is one.
     pub(crate) table: Option<&'a mut ActivationTable>,
     pub(crate) activated: &'a ActivatedFields,
     pub(crate) x: &'a [f64],
@@ -53,8 +53,8 @@ pub(crate) struct LearnFromOne<'a> {
 }
 
 impl LearnFromOne<'_> {
-    /// Goes to the code for this row length. Those of common lengths are known to the compiler, so that loops unroll and
-    /// rows stay in registers. Each is a separate function, which keeps stack frames small where nothing is optimised.
+    /// Selects the code for this row length. Common lengths are constants, so that loops unroll and rows stay in
+    /// registers. Each is a separate function, which keeps stack frames small in unoptimised builds.
     #[inline(always)]
     pub(crate) fn run<S: Simd>(self, simd: S) {
         if const { S::F64_LANES == 1 } {
@@ -82,7 +82,7 @@ impl LearnFromOne<'_> {
         simd.vectorize(OfWidth::<M, WIDTH> { learn: self, shape: M::default() });
     }
 
-    /// For any other length; `REGISTERS`, if rows fill them.
+    /// For any other length; `REGISTERS` states whether rows fill whole registers.
     #[inline(always)]
     fn alone<S: Simd, M: Shape, const REGISTERS: bool>(self, simd: S) {
         simd.vectorize(OfAnyWidth::<M, REGISTERS> { learn: self, shape: M::default() });
@@ -101,7 +101,7 @@ impl LearnFromOne<'_> {
         (x, y): (&[f64], f64),
         (rows, gram): (&mut [f64], &mut [f64]),
     ) {
-        // Rows of two are not padded: then all is a constant.
+        // Rows of two are not padded, so that everything is a constant.
         let n_in = if x.len() == 2 { 2 } else { settings.n_in };
         let layout = Layout::of(settings, x.len(), (M::METRIC, n_in));
         for ActivatedField { field: k, q, activation } in activated.iter() {
@@ -167,8 +167,8 @@ impl<M: Shape, const REGISTERS: bool> pulp::WithSimd for OfAnyWidth<'_, M, REGIS
     }
 }
 
-/// Fields learn from a normalised sample each. Returns which of them call for another direction, if any. The length of
-/// `x` is that of rows.
+/// Fields learn from a normalised sample each. Returns which of them need another direction, if any. The length of `x`
+/// is that of rows.
 #[inline(always)]
 pub(crate) fn train<T: Element<T>, E: Element<T>, M: Shape>(
     tokens: (T::Token, E::Token),

@@ -19,7 +19,7 @@ pub(crate) struct Step<T: Number> {
     pub(crate) gamma: f64,
     /// Damping while the leave-one-out error is not well known.
     pub(super) transient: T,
-    /// A step down of more than this is not made.
+    /// Larger downward steps are not made.
     pub(super) limit: T,
     /// Lanes that move at all.
     settled: T::Mask,
@@ -27,7 +27,7 @@ pub(crate) struct Step<T: Number> {
     pub(crate) rate: Option<f64>,
 }
 
-/// Derivatives of q and of the penalty by one element of M.
+/// Derivatives of q and of the penalty with respect to one element of M.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Derivatives<E> {
     pub(crate) dq: E,
@@ -37,7 +37,7 @@ pub(crate) struct Derivatives<E> {
 }
 
 impl<E: Number> Derivatives<E> {
-    /// By an element of a diagonal M.
+    /// With respect to an element of a diagonal M.
     #[inline(always)]
     pub(super) fn diagonal(gamma: f64, m: E, dx: E) -> Self {
         let (square, m2) = (dx * dx, m * m);
@@ -103,13 +103,13 @@ impl<T: Number> Step<T> {
         }
     }
 
-    /// Gradient of the cost by one element, damped.
+    /// Gradient of the cost with respect to one element, damped.
     #[inline(always)]
     fn gradient<E: Element<T>>(&self, by: Derivatives<E>) -> E {
         (by.penalty * self.omega + by.dq * self.activation.slope * self.j1) * self.transient
     }
 
-    /// A plain step of element `i`; one that is too large halves the learning rate instead.
+    /// A plain step of element `i`; a step that is too large halves the learning rate instead.
     #[inline(always)]
     pub(crate) fn descend<E: Element<T>>(&self, rows: &mut ElementRows<'_, E>, i: usize, by: Derivatives<E>) {
         let token = by.dq.token();

@@ -1,4 +1,4 @@
-//! The fields of one output, and how they learn from one sample.
+//! The fields of one output, and their training with one sample.
 
 use crate::Pruning;
 use crate::field::Field;
@@ -16,7 +16,7 @@ pub(crate) struct SubModel {
     pub(crate) n_pruned: usize,
 }
 
-/// The strongest activation of a sample, and whose it is.
+/// The strongest activation for a sample, and its field.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct Strongest {
     pub(crate) w: f64,
@@ -24,7 +24,8 @@ pub(crate) struct Strongest {
 }
 
 impl Strongest {
-    /// Among the fields near a sample but one; of equal ones the earlier counts. Only few samples ask.
+    /// The strongest of the fields near a sample, without the field `but`; the earlier one of equals. Needed for few samples
+    /// only.
     fn among(activated: &ActivatedFields, but: Option<usize>) -> Self {
         let mut strongest = Strongest::default();
         for ActivatedField { field, activation, .. } in activated.iter() {
@@ -35,8 +36,8 @@ impl Strongest {
         strongest
     }
 
-    /// Takes note of another field where they come in any order, and of equal ones the first in the list counts. Values are
-    /// chosen, not branches, since which field is the strongest cannot be predicted.
+    /// Considers another field, for fields in arbitrary order; among equals, the first in the list counts. Uses conditional
+    /// moves instead of branches, because which field is the strongest is unpredictable.
     #[inline(always)]
     pub(crate) fn see_unordered(&mut self, field: usize, w: f64) {
         let earlier = if w == self.w && field < self.field { field } else { self.field };
@@ -51,7 +52,7 @@ impl Strongest {
 }
 
 impl SubModel {
-    /// Finds the fields that the normalised sample `x` activates, to some of which distances may be `known`, and how strongly.
+    /// Finds the fields that the normalised sample `x` activates, and their activations. Some distances may be `known`.
     #[inline(always)]
     pub(crate) fn activate<S: pulp::Simd>(
         &self,

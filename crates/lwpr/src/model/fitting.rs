@@ -10,8 +10,8 @@ use crate::learning::passes::{BatchFit, SHORTEST};
 use crate::{Lwpr, LwprError};
 
 impl Lwpr {
-    /// Learns from all columns of `xs` (`n_in`, N) and `ys` (`n_out`, N) in the order given, `passes` times; the same,
-    /// bit for bit, as as many calls of [`update`](Self::update).
+    /// Learns from all columns of `xs` (`n_in`, N) and `ys` (`n_out`, N) in the given order, `passes` times. Bit for bit
+    /// the same as that many calls of [`update`](Self::update).
     ///
     /// # Errors
     /// [`LwprError::EmptyBatch`], [`LwprError::SampleCount`], [`LwprError::Dimension`], [`LwprError::BadValue`] or
@@ -25,7 +25,7 @@ impl Lwpr {
         self.fit(xs, ys, passes, &mut |_| ())
     }
 
-    /// Learns from all columns of `xs` (`n_in`, N) and `ys` (`n_out`, N) in a fresh random order each pass.
+    /// Learns from all columns of `xs` (`n_in`, N) and `ys` (`n_out`, N) in a new random order in each pass.
     ///
     /// # Errors
     /// As [`fit_in_order`](Self::fit_in_order).
@@ -39,11 +39,11 @@ impl Lwpr {
         self.fit(xs, ys, passes, &mut |order| order.shuffle(rng))
     }
 
-    /// As many passes, `arrange` ordering the samples before each. Field by field where that is the same as sample by
-    /// sample, and faster: many dimensions or a full metric keep vector registers busy by themselves, and few samples do
-    /// not pay for the preparation.
+    /// Performs `passes` passes; `arrange` orders the samples before each. Proceeds field by field if that gives the
+    /// same result as sample by sample and is faster: many dimensions or a full metric fill vector registers anyway, and
+    /// few samples do not justify the preparation.
     ///
-    /// Nothing here depends on the caller's types, so that it is compiled once.
+    /// Independent of the caller's types, so that it is compiled once.
     fn fit(
         &mut self,
         xs: DMatrixView<'_, f64>,

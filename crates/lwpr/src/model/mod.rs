@@ -16,20 +16,20 @@ use crate::model::record::ModelRecord;
 use crate::settings::Settings;
 use crate::{LwprError, LwprParams, ReceptiveField};
 
-/// A model that learns; make one with [`LwprParams::build`].
+/// A model that learns; created by [`LwprParams::build`].
 ///
-/// It can be stored with serde and continues learning afterwards with the same bits.
+/// It can be stored with serde and then continues learning with the same bits.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(try_from = "ModelRecord", into = "ModelRecord")]
 pub struct Lwpr {
     pub(crate) settings: Settings,
     pub(crate) outputs: Vec<SubModel>,
-    /// Number of samples learnt.
+    /// Number of learnt samples.
     pub(crate) n_data: usize,
     online: Online,
 }
 
-/// Memory of a single update, kept so that it allocates nothing.
+/// Memory of a single update, kept so that updates do not allocate.
 #[derive(Debug, Clone)]
 struct Online {
     x: Rows,
@@ -62,7 +62,7 @@ impl pulp::WithSimd for UpdateChecked<'_> {
 }
 
 impl LwprParams {
-    /// An empty model of `n_in` inputs and `n_out` outputs. The parameters are checked here, once.
+    /// An empty model with `n_in` inputs and `n_out` outputs. The parameters are checked only here.
     ///
     /// # Errors
     /// [`LwprError::NoDimension`], [`LwprError::Parameter`], [`LwprError::NormLength`], [`LwprError::Norm`] or one of
@@ -87,8 +87,8 @@ impl Lwpr {
         Lwpr { settings, outputs, n_data, online }
     }
 
-    /// Learns from one sample x (`n_in`), y (`n_out`). Allocates nothing, except when a receptive field is born or
-    /// grows by a projection.
+    /// Learns from one sample x (`n_in`), y (`n_out`). Does not allocate, except when a receptive field is created or
+    /// gets another projection.
     ///
     /// # Errors
     /// [`LwprError::Dimension`], [`LwprError::BadValue`] or [`LwprError::TooManyReceptiveFields`]; the model is then
@@ -137,7 +137,7 @@ impl Lwpr {
         pulp::Arch::new().dispatch(UpdateChecked { model: self, xs, ys, order, memory })
     }
 
-    /// The parameters, as given.
+    /// The given parameters.
     pub fn params(&self) -> &LwprParams {
         &self.settings.params
     }
@@ -152,7 +152,7 @@ impl Lwpr {
         self.settings.n_out
     }
 
-    /// Number of samples learnt.
+    /// Number of learnt samples.
     pub fn n_data(&self) -> usize {
         self.n_data
     }

@@ -1,4 +1,4 @@
-//! The stored form of a model, complete, so that training can continue with the same bits.
+//! The complete stored form of a model, with which training can continue with the same bits.
 
 use serde::{Deserialize, Serialize};
 
@@ -9,10 +9,10 @@ use crate::learning::sub_model::SubModel;
 use crate::settings::Settings;
 use crate::{Lwpr, LwprError, LwprParams, Metric};
 
-/// More samples than this cannot have been learnt; every whole number up to it is a floating-point number.
+/// Maximum number of learnt samples; all integers up to it are exact in floating point.
 const MOST_SAMPLES: usize = 1 << 53;
 
-/// A [`Lwpr`].
+/// Record of a [`Lwpr`].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct ModelRecord {
@@ -30,7 +30,7 @@ struct OutputRecord {
     fields: Vec<FieldRecord>,
 }
 
-/// A receptive field; vectors without padding, matrices column after column.
+/// A receptive field; vectors without padding, matrices column by column.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct FieldRecord {
@@ -75,7 +75,7 @@ fn unpad(rows: &[f64], settings: &Settings) -> Vec<f64> {
     rows.chunks_exact(settings.width).flat_map(|row| &row[..settings.n_in]).copied().collect()
 }
 
-/// Appends `n_rows` rows with their padding; `None` if there are more or fewer numbers, or one is not finite.
+/// Appends `n_rows` rows with padding; `None` if the number of values is wrong, or one is not finite.
 fn pad(rows: &mut Vec<f64>, numbers: &[f64], n_rows: usize, settings: &Settings) -> Option<()> {
     if numbers.len() != n_rows * settings.n_in || !numbers.iter().all(|number| number.is_finite()) {
         return None;
@@ -87,8 +87,8 @@ fn pad(rows: &mut Vec<f64>, numbers: &[f64], n_rows: usize, settings: &Settings)
     Some(())
 }
 
-/// Whether a field's numbers have not overflowed, which absurd learning rates can bring about. One whose have is of no use,
-/// for prediction or learning, and is not stored.
+/// Whether a field's numbers are finite. Absurd learning rates may cause overflow; such a field is useless for prediction
+/// and learning, and is not stored.
 fn is_finite(field: &Field) -> bool {
     let direction_is = |direction: &Direction| {
         let &Direction { beta, sum_ws2, sum_wst, h, r, sum_w, sum_loo_error2, n_data, lambda, s: _ } = direction;

@@ -6,8 +6,8 @@ use pulp::Simd;
 use super::field_table::{FieldTable, NOISE, NOISE_KNOWN};
 use super::query::Active;
 
-/// √(Σ w σ² + Σ w (y − `value`)²), with variances σ² = Γ(1 + w Σ s²/Σ w s²); fields without errors add their spread, but no
-/// noise of their own. Infinite if none has errors. A separate function, compiled once for all numbers of dimensions.
+/// √(Σ w σ² + Σ w (y − `value`)²), with variances σ² = Γ(1 + w Σ s²/Σ w s²). Fields without errors contribute their spread,
+/// but no noise. Infinite if no field has errors. A separate function, compiled once for all dimensions.
 pub(super) struct Confidence<'a> {
     pub(super) table: &'a FieldTable,
     pub(super) x: &'a [f64],

@@ -1,4 +1,4 @@
-//! How far a query is from eight fields at a time.
+//! Distances of a query from eight fields at a time.
 
 use lanes::{Lanes, Number, Register};
 use pulp::Simd;
@@ -40,7 +40,7 @@ pub(super) fn full_distance<S: Simd>(simd: S, block: Block<'_>, x: &[f64], part:
         }
         q = dx.mul_add((beside + beside) + dx * Register::load(simd, diagonal, part), q);
     }
-    // A singular D may be negative by rounding; what is no number stays none.
+    // A singular D may give a negative value by rounding; NaN stays NaN.
     let zero = Register::splat(simd, 0.0);
     (zero.or_else(zero.above(q), q), y)
 }
@@ -58,7 +58,7 @@ pub(super) fn differences<S: Simd>(simd: S, block: Block<'_>, x: &[f64], dx: &mu
 /// Element `i` of v = D(x − c) with full D.
 #[inline(always)]
 pub(super) fn turned<S: Simd>(simd: S, block: Block<'_>, dx: &[Lanes], i: usize, part: usize) -> Register<S> {
-    // Row j of the triangle begins n, n − 1, … further on.
+    // Row j of the triangle starts n, n − 1, … numbers later.
     let mut at = i;
     let mut sum = Register::splat(simd, 0.0);
     for (j, dx_j) in dx[..i].iter().enumerate() {

@@ -1,12 +1,12 @@
-//! The fields of an output, eight side by side, as predictions need them.
+//! The fields of an output, eight side by side, in the form that predictions read.
 
 use lanes::{LANES, Lanes};
 
 use super::local_model::LocalModel;
 use crate::field::rows::Rows;
 
-/// Rows of a block before those of the dimensions: 0 for each field and infinity for each lane without; the activation
-/// above which a field takes part, infinite for those that are not trustworthy; offset; noise variance, and 1 where it is
+/// Rows of a block before those of the dimensions: 0 for each field and infinity for each empty lane; the activation
+/// above which a field takes part, infinite for fields that are not trustworthy; offset; noise variance, and 1 if it is
 /// known.
 pub(super) const FAR: usize = 0;
 pub(super) const CUTOFF: usize = 1;
@@ -15,26 +15,26 @@ pub(super) const NOISE: usize = 3;
 pub(super) const NOISE_KNOWN: usize = 4;
 const HEAD: usize = 5;
 
-/// Rows of a dimension: centre, slope.
+/// Rows per dimension: centre, slope.
 pub(super) const AXIS: usize = 2;
 
 /// All fields of an output, in blocks of eight.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct FieldTable {
     shape: BlockShape,
-    /// For each block its head, its dimensions, its metric.
+    /// For each block, its head, its dimensions, its metric.
     rows: Rows,
-    /// What only confidence asks for: for each block the mean, then as many rows a direction as there are inputs.
+    /// Data for the confidence only: for each block the mean, then for each direction as many rows as there are inputs.
     loadings: Rows,
-    /// Where each block's loadings begin, and where the last one's end.
+    /// Position of each block's loadings, and the end of the last one's.
     starts: Vec<usize>,
 }
 
-/// How many rows the parts of a block have. Passed to what reads blocks, so that it can be a constant.
+/// Numbers of rows in the parts of a block. Passed to functions that read blocks, so that it can be a constant.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct BlockShape {
     pub(super) n_in: usize,
-    /// The diagonal of D, or its upper triangle row after row.
+    /// The diagonal of D, or its upper triangle row by row.
     metric: usize,
 }
 
@@ -44,7 +44,7 @@ impl BlockShape {
         BlockShape { n_in, metric: if full { n_in * (n_in + 1) / 2 } else { n_in } }
     }
 
-    /// Whether fields may turn.
+    /// Whether the metric is full.
     #[inline(always)]
     pub(super) const fn is_full(self) -> bool {
         self.metric != self.n_in
@@ -72,7 +72,7 @@ pub(super) struct Block<'a> {
 }
 
 impl FieldTable {
-    /// Fields of `n_in` inputs, of which the trustworthy take part above `cutoff`.
+    /// Fields with `n_in` inputs; the trustworthy ones take part above `cutoff`.
     pub(super) fn new(n_in: usize, models: &[LocalModel], cutoff: f64) -> Self {
         let shape = BlockShape::new(n_in, models.iter().any(|model| model.metric.len() != n_in));
         let mut rows = vec![[0.0; LANES]; models.len().div_ceil(LANES) * shape.size()];
@@ -107,14 +107,14 @@ impl FieldTable {
         self.rows.as_chunks().0.chunks_exact(shape.size()).map(move |rows| shape.named(rows))
     }
 
-    /// Mean of a block's fields, and their loadings, direction after direction.
+    /// Mean of a block's fields, and their loadings, direction by direction.
     #[inline(always)]
     pub(super) fn loadings(&self, b: usize) -> (&[Lanes], &[Lanes]) {
         self.loadings.as_chunks().0[self.starts[b]..self.starts[b + 1]].split_at(self.shape.n_in)
     }
 }
 
-/// Writes the rows of a block, which are zero.
+/// Writes the rows of a block, which are initially zero.
 fn fill_block(shape: BlockShape, rows: &mut [Lanes], fields: &[LocalModel], cutoff: f64) {
     let n = shape.n_in;
     (rows[FAR], rows[CUTOFF]) = ([f64::INFINITY; LANES], [f64::INFINITY; LANES]);
@@ -138,7 +138,7 @@ fn fill_block(shape: BlockShape, rows: &mut [Lanes], fields: &[LocalModel], cuto
     }
 }
 
-/// Appends what a block's confidence asks for.
+/// Appends the confidence data of a block.
 fn push_loadings(n_in: usize, loadings: &mut Vec<Lanes>, fields: &[LocalModel]) {
     let directions = fields.iter().filter_map(|model| Some(model.affine.as_ref()?.loadings.len() / n_in)).max();
     let start = loadings.len();
@@ -151,7 +151,7 @@ fn push_loadings(n_in: usize, loadings: &mut Vec<Lanes>, fields: &[LocalModel]) 
     }
 }
 
-/// Where element `k` of the upper triangle, row after row, stands in an (n, n) matrix.
+/// Position of element `k` of the upper triangle, row by row, in an (n, n) matrix.
 fn place_in_triangle(n: usize, mut k: usize) -> usize {
     let mut row = 0;
     while k >= n - row {

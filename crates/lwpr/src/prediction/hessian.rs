@@ -8,8 +8,8 @@ use super::field_table::FieldTable;
 use super::query::{Active, Query, Scale};
 use crate::Kernel;
 
-/// Writes the second derivative: Σ (y − `value`)(4 w″ vvᵀ + 2 w′ D) + Σ 2 w′ (v sᵀ + s vᵀ), less g aᵀ + a gᵀ with the
-/// gradient g and a = Σ 2 w′ v, over Σ w. A separate function, compiled once for all numbers of dimensions.
+/// Writes the second derivative: Σ (y − `value`)(4 w″ vvᵀ + 2 w′ D) + Σ 2 w′ (v sᵀ + s vᵀ), minus g aᵀ + a gᵀ with the
+/// gradient g and a = Σ 2 w′ v, divided by Σ w. A separate function, compiled once for all dimensions.
 pub(super) struct Hessian<'a> {
     pub(super) query: &'a Query<'a>,
     pub(super) scale: f64,

@@ -1,4 +1,4 @@
-//! Prediction from a model as it stands, between two updates.
+//! Prediction with the current state of a model, between two updates.
 
 use std::cell::RefCell;
 
@@ -15,7 +15,7 @@ use crate::learning::sub_model::SubModel;
 use crate::settings::Settings;
 use crate::{Lwpr, Metric};
 
-/// A field that takes part. Its slope and D(x − c) lie in [`Scratch::vectors`].
+/// A field that takes part. Its slope and D(x − c) are in [`Scratch::vectors`].
 #[derive(Debug, Clone, Copy)]
 struct Term {
     w: f64,
@@ -25,10 +25,10 @@ struct Term {
     noise: Option<f64>,
 }
 
-/// Memory of a query; each thread has one, so that none allocates more than once.
+/// Memory of a query; one per thread, so that each thread allocates only once.
 #[derive(Debug, Default)]
 struct Scratch {
-    /// x, x − mean less what the directions explain, M(x − c).
+    /// x, x − mean minus the part that the directions explain, M(x − c).
     rows: Vec<f64>,
     activated: ActivatedFields,
     terms: Vec<Term>,
@@ -40,9 +40,10 @@ thread_local! {
 }
 
 impl Lwpr {
-    /// Prediction at `x` by the current model, without a snapshot. Returns whether every output has support; an output
-    /// without support keeps its value, gradient and confidence, and only its `max_activation` is written. Fields whose
-    /// activation is at most `cutoff` do not take part. Allocates nothing once a thread has asked a model of that size.
+    /// Prediction at `x` by the current model, without a snapshot. Returns whether every output has support. An output
+    /// without support keeps its value, gradient and confidence; only its `max_activation` is written. Fields whose
+    /// activation is at most `cutoff` do not take part. Does not allocate after a thread's first query to a model of
+    /// that size.
     ///
     /// # Panics
     /// If `prediction` was made for other numbers of inputs and outputs.
@@ -50,12 +51,12 @@ impl Lwpr {
         prediction.fill_with(self.n_in(), self.n_out(), |output, wanted| self.ask(x, output, cutoff, wanted))
     }
 
-    /// Prediction of one output and its derivative by the input (`n_in`), written into `gradient`, from the model as it
-    /// stands; `None` without support (`gradient` may then hold anything). Otherwise as
+    /// Prediction of one output by the current model, and its derivative with respect to the input (`n_in`), written
+    /// into `gradient`; `None` without support (`gradient` then has arbitrary contents). Otherwise as
     /// [`predict_into`](Self::predict_into).
     ///
     /// # Panics
-    /// If there is no such output, or `gradient` has not `n_in` elements.
+    /// If there is no such output, or `gradient` does not have `n_in` elements.
     pub fn value_and_gradient_into(
         &self,
         x: DVectorView<'_, f64>,
@@ -88,7 +89,7 @@ impl Lwpr {
     }
 }
 
-/// One question to one output, compiled for the processor at hand.
+/// A query to one output, compiled for the actual processor.
 struct Ask<'a> {
     settings: &'a Settings,
     sub_model: &'a SubModel,
@@ -115,7 +116,7 @@ impl pulp::WithSimd for Ask<'_> {
         let squared_radius = if self.wanted.max_activation.is_some() {
             f64::INFINITY
         } else {
-            // Where rounding might decide, the activation itself does.
+            // The margin leaves cases near the limit, where rounding matters, to a comparison of the activation itself.
             self.settings.params.kernel.squared_radius(self.cutoff.min(1.0)) + 1e-6
         };
         let fields = (&self.sub_model.fields[..], &self.sub_model.table);
@@ -131,7 +132,7 @@ impl pulp::WithSimd for Ask<'_> {
 }
 
 impl Ask<'_> {
-    /// `width` is that of the settings, passed so that it can be a constant.
+    /// `width` is that of the settings, passed as an argument so that it can be a constant.
     #[inline(always)]
     fn answer<E: Element<f64>>(self, token: E::Token, width: usize) -> Option<f64> {
         let Ask { settings, sub_model, norm_out, cutoff, wanted, scratch, .. } = self;
@@ -151,7 +152,7 @@ impl Ask<'_> {
             let local = Local { settings, field, layout: Layout::new(settings, width) };
             let (slope, v) = vectors[at..at + 2 * width].split_at_mut(width);
             let (y, squares) = local.predict::<E>(token, x, rest, slope);
-            // What has run into numbers that are not finite is of no use.
+            // A field whose numbers have become infinite or NaN is useless.
             if !y.is_finite() {
                 continue;
             }
@@ -194,7 +195,7 @@ fn spread(terms: &[Term], value: f64) -> f64 {
     terms.iter().map(square).sum::<f64>().sqrt()
 }
 
-/// A field that is asked.
+/// A field that is evaluated.
 #[derive(Clone, Copy)]
 struct Local<'a> {
     settings: &'a Settings,
@@ -211,8 +212,8 @@ impl Local<'_> {
         rows.split_at(width)
     }
 
-    /// The local prediction at `x` and Σ s²/Σ w s². `slope` receives Σⱼ βⱼ ∂sⱼ/∂x, by the adjoint of the deflations
-    /// x ← x − P s.
+    /// The local prediction at `x` and Σ s²/Σ w s². `slope` receives Σⱼ βⱼ ∂sⱼ/∂x, by the adjoint of the deflations x ←
+    /// x − P s.
     #[inline(always)]
     fn predict<E: Element<f64>>(&self, token: E::Token, x: &[f64], rest: &mut [f64], slope: &mut [f64]) -> (f64, f64) {
         let (width, usable) = (self.layout.width, self.field.n_usable(self.settings.n_in));

@@ -7,11 +7,11 @@ use crate::field::element::{Element, add_scaled};
 use crate::field::{DIRECTION_ROWS, Field, Layout};
 use crate::settings::Settings;
 
-/// Normalised inputs are nowhere beyond this, and no other number of a field is larger than that.
+/// Bound on normalised inputs and on all other numbers of a field.
 const FARTHEST: f64 = 1e51;
 const LARGEST: f64 = 1e150;
 
-/// A receptive field, frozen. Vectors are not padded; everything is in normalised units.
+/// A frozen receptive field. Vectors are not padded; everything is in normalised units.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) struct LocalModel {
     pub(super) centre: Vec<f64>,
@@ -21,39 +21,40 @@ pub(super) struct LocalModel {
     pub(super) affine: Option<Affine>,
 }
 
-/// A local prediction and what its confidence needs.
+/// A local prediction and the data for its confidence.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) struct Affine {
     pub(super) offset: f64,
     pub(super) slope: Vec<f64>,
-    /// Noise variance Γ; `None` before errors were collected.
+    /// Noise variance Γ; `None` until errors have been collected.
     pub(super) noise: Option<f64>,
-    /// One row aⱼ a direction: the loading of x, over the spread of the loadings seen, is aⱼᵀ(x − mean).
+    /// One row aⱼ per direction: aⱼᵀ(x − mean) is the loading of x divided by the spread of the observed loadings.
     pub(super) mean: Vec<f64>,
     pub(super) loadings: Vec<f64>,
 }
 
-/// The prediction of one receptive field at a divided input z: offset + slopeᵀ(z − c), activated by q = (z − c)ᵀD(z − c).
+/// The prediction of one receptive field at a divided input z: offset + slopeᵀ(z − c), with an activation that depends on
+/// q = (z − c)ᵀD(z − c).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LocalPrediction<'a> {
     /// c, (n).
     pub centre: &'a [f64],
     /// D: its diagonal (n), or its columns (n²).
     pub metric: &'a [f64],
-    /// Of the prediction.
+    /// Offset of the prediction.
     pub offset: f64,
-    /// (n).
+    /// Slope of the prediction, (n).
     pub slope: &'a [f64],
 }
 
 impl LocalModel {
-    /// None while the field is not trustworthy.
+    /// `None` while the field is not trustworthy.
     pub(super) fn prediction(&self) -> Option<LocalPrediction<'_>> {
         let Affine { offset, slope, .. } = self.affine.as_ref()?;
         Some(LocalPrediction { centre: &self.centre, metric: &self.metric, offset: *offset, slope })
     }
 
-    /// `None` where learning has run into numbers that are not finite or absurdly large, so that the field is of no use.
+    /// `None` if learning has produced numbers that are not finite or absurdly large, so that the field is useless.
     pub(super) fn new(field: &Field, settings: &Settings) -> Option<Self> {
         let n = settings.n_in;
         let centre = field.centre(settings).to_vec();
@@ -67,7 +68,7 @@ impl LocalModel {
         model.is_sound().then_some(model)
     }
 
-    /// Whether all vectors fit `n` inputs.
+    /// Whether all vectors have the right length for `n` inputs.
     pub(super) fn has_shape(&self, n: usize) -> bool {
         let affine_has = |affine: &Affine| {
             affine.slope.len() == n && affine.mean.len() == n && affine.loadings.len().is_multiple_of(n)
@@ -77,7 +78,7 @@ impl LocalModel {
             && self.affine.as_ref().is_none_or(affine_has)
     }
 
-    /// Whether every number is finite and of a size that predictions of finite inputs are, and the metric is one.
+    /// Whether every number is finite and not too large for finite predictions, and the metric is valid.
     pub(super) fn is_sound(&self) -> bool {
         let below = |values: &[f64], limit: f64| values.iter().all(|value| value.abs() <= limit);
         let affine_is = |affine: &Affine| {
@@ -93,7 +94,7 @@ impl LocalModel {
             && self.affine.as_ref().is_none_or(affine_is)
     }
 
-    /// Whether D is symmetric and, to rounding, nowhere negative.
+    /// Whether D is symmetric and, up to rounding, positive semidefinite.
     fn has_metric(&self) -> bool {
         let n = self.centre.len();
         if self.metric.len() == n {
@@ -115,13 +116,13 @@ impl Affine {
             |j: usize| &rows[(DIRECTION_ROWS * j + 2) * w..][..w],
             |j: usize| &rows[(DIRECTION_ROWS * j + 3) * w..][..w],
         );
-        // Slope Σⱼ βⱼ ∂sⱼ/∂x by the adjoint of the deflations x ← x − P s, O(n) a direction.
+        // Slope Σⱼ βⱼ ∂sⱼ/∂x by the adjoint of the deflations x ← x − P s, O(n) per direction.
         let mut slope = vec![0.0; w];
         for j in (0..usable).rev() {
             let factor = field.directions[j].beta - f64::dot((), p(j), &slope);
             add_scaled::<f64, f64>((), &mut slope, factor, u(j));
         }
-        // ∂sⱼ/∂x likewise, each alone.
+        // ∂sⱼ/∂x likewise, one direction at a time.
         let mut loadings = Vec::with_capacity(usable * n);
         for j in 0..usable {
             let mut loading = u(j).to_vec();

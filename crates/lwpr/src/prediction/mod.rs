@@ -23,17 +23,17 @@ use sweep::Wanted;
 pub struct Prediction {
     /// The prediction (`n_out`).
     pub value: DVector<f64>,
-    /// Its derivative by the input (`n_out`, `n_in`).
+    /// Its derivative with respect to the input (`n_out`, `n_in`).
     pub gradient: DMatrix<f64>,
-    /// Predictive standard deviation (`n_out`), in the units of the outputs; infinite where no field that takes part
-    /// has collected errors yet (in its first hundred samples or so, with the default forgetting).
+    /// Predictive standard deviation (`n_out`), in the units of the outputs; infinite if no field that takes part has
+    /// collected errors yet (in its first hundred samples or so, with the default forgetting).
     pub confidence: DVector<f64>,
-    /// Activation of the nearest receptive field (`n_out`), whether it takes part or not.
+    /// Activation of the nearest receptive field (`n_out`), whether or not it takes part.
     pub max_activation: DVector<f64>,
 }
 
 impl Prediction {
-    /// Room for the predictions of a model of `n_in` inputs and `n_out` outputs; all zero.
+    /// Memory for the predictions of a model with `n_in` inputs and `n_out` outputs; all zero.
     pub fn zeros(n_in: usize, n_out: usize) -> Self {
         Prediction {
             value: DVector::zeros(n_out),
@@ -43,7 +43,7 @@ impl Prediction {
         }
     }
 
-    /// Asks output after output for everything. Returns whether all have support.
+    /// Queries each output for everything. Returns whether all have support.
     fn fill_with(&mut self, n_in: usize, n_out: usize, mut ask: impl FnMut(usize, Wanted<'_>) -> Option<f64>) -> bool {
         assert_eq!(self.gradient.shape(), (n_out, n_in), "the prediction has the shape of the model");
         self.max_activation.fill(0.0);
@@ -64,12 +64,12 @@ impl Prediction {
     }
 }
 
-/// Whether `x` is something to be asked: `n_in` finite numbers.
+/// Whether `x` is a valid query: `n_in` finite numbers.
 fn is_query(x: DVectorView<'_, f64>, n_in: usize) -> bool {
     x.len() == n_in && are_finite(x.as_slice())
 }
 
-/// Whether all numbers are finite, found without a branch for each.
+/// Whether all numbers are finite, computed without a branch for each.
 fn are_finite(numbers: &[f64]) -> bool {
     numbers.iter().fold(true, |finite, number| finite & number.is_finite())
 }

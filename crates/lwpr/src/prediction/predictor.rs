@@ -13,11 +13,11 @@ use crate::error::Side;
 use crate::settings::require_finite;
 use crate::{Kernel, Lwpr, LwprError};
 
-/// An immutable snapshot of a model that predicts; made by [`Lwpr::predictor`]. Threads may share it.
+/// An immutable snapshot of a model that predicts; created by [`Lwpr::predictor`]. Threads may share it.
 ///
-/// A query is (`n_in`) numbers in the units the model was trained with. One that has another length or is not finite has
-/// no support; what takes a batch refuses it instead. Nothing allocates but the answers that are returned; a thread's
-/// first query of a model makes room once.
+/// A query consists of `n_in` numbers in the units of the training data. A query of another length, or with a number that is
+/// not finite, has no support; batch functions refuse it instead. Only returned results are allocated; a thread's first
+/// query of a model also allocates its scratch memory.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "PredictorRecord", into = "PredictorRecord")]
 pub struct Predictor {
@@ -28,7 +28,7 @@ pub struct Predictor {
     outputs: Vec<OutputFields>,
 }
 
-/// The fields of one output, as they are stored and as they are asked.
+/// The fields of one output, in stored form and in the form for evaluation.
 #[derive(Debug, Clone, PartialEq)]
 struct OutputFields {
     models: Vec<LocalModel>,
@@ -36,8 +36,8 @@ struct OutputFields {
 }
 
 impl Lwpr {
-    /// An immutable snapshot that predicts. Fields whose activation is at most `cutoff` do not take part: 0.001 is a
-    /// good choice, 0 uses every field however far.
+    /// An immutable snapshot that predicts. Fields whose activation is at most `cutoff` do not take part: 0.001 is a good
+    /// choice, 0 uses every field at any distance.
     pub fn predictor(&self, cutoff: f64) -> Predictor {
         let settings = &self.settings;
         let freeze = |field| LocalModel::new(field, settings);
@@ -69,7 +69,7 @@ impl From<Predictor> for PredictorRecord {
 }
 
 impl Predictor {
-    /// From a record that has been checked.
+    /// From a checked record.
     fn from_record(record: PredictorRecord) -> Self {
         let PredictorRecord { kernel, cutoff, norm_in, norm_out, outputs } = record;
         let fields =
@@ -78,7 +78,7 @@ impl Predictor {
             cutoff,
             scale: Scale {
                 kernel,
-                // Where rounding might decide, the activation itself does.
+                // The margin leaves cases near the limit, where rounding matters, to a comparison of the activation itself.
                 squared_radius: kernel.squared_radius(cutoff.min(1.0)) + 1e-6,
                 per_norm_in: norm_in.iter().map(|norm| 1.0 / norm).collect(),
             },
@@ -98,8 +98,8 @@ impl Predictor {
         }
     }
 
-    /// The answers to so many queries, in parallel where that pays: handing out work to threads, and answers that one thread
-    /// allocates and another frees, cost more than a small batch.
+    /// The results of `queries` queries, in parallel if that is faster. For a small batch, distributing work to threads, and
+    /// memory that one thread allocates and another frees, cost more than the queries.
     fn each<T: Send>(&self, queries: usize, answer: impl Fn(usize) -> T + Send + Sync) -> Vec<T> {
         let fields: usize = self.outputs.iter().map(|output| output.models.len()).sum();
         let together = worth_a_thread(fields, self.n_in());
@@ -109,8 +109,8 @@ impl Predictor {
         (0..queries).into_par_iter().with_min_len(together).map(answer).collect()
     }
 
-    /// Value, gradient, confidence and activation at `x`; `None` if some output has no trustworthy field activated above
-    /// the cutoff.
+    /// Value, gradient, confidence and activation at `x`; `None` if some output has no trustworthy field with an activation
+    /// above the cutoff.
     pub fn predict(&self, x: DVectorView<'_, f64>) -> Option<Prediction> {
         let mut prediction = Prediction::zeros(self.n_in(), self.n_out());
         self.predict_into(x, &mut prediction).then_some(prediction)
@@ -146,8 +146,8 @@ impl Predictor {
         Ok(self.each(xs.ncols(), |sample| self.value(xs.column(sample), output)))
     }
 
-    /// Gradients of one output at every column of `xs` (`n_in`, N), written into the columns of `gradients` (`n_in`, N),
-    /// in parallel; the same at any thread count. A column without support becomes NaN. Returns how many do.
+    /// Gradients of one output at each column of `xs` (`n_in`, N), written into the columns of `gradients` (`n_in`, N), in
+    /// parallel; the same at any thread count. Columns without support become NaN; returns their number.
     ///
     /// # Errors
     /// [`LwprError::Dimension`] or [`LwprError::BadValue`].
@@ -190,11 +190,11 @@ impl Predictor {
         self.ask(x, output, Wanted::default())
     }
 
-    /// Prediction of one output and its derivative by the input (`n_in`), written into `gradient`; `None` without
-    /// support (`gradient` may then hold anything).
+    /// Prediction of one output and its derivative with respect to the input (`n_in`), written into `gradient`; `None`
+    /// without support (`gradient` then has arbitrary contents).
     ///
     /// # Panics
-    /// If there is no such output, or `gradient` has not `n_in` elements.
+    /// If there is no such output, or `gradient` does not have `n_in` elements.
     pub fn value_and_gradient_into(
         &self,
         x: DVectorView<'_, f64>,
@@ -205,7 +205,7 @@ impl Predictor {
         self.ask(x, output, Wanted { gradient: Some((gradient.as_mut_slice(), 1)), ..Wanted::default() })
     }
 
-    /// Second derivative of one output by the input (`n_in`, `n_in`); `None` without support.
+    /// Second derivative of one output with respect to the input (`n_in`, `n_in`); `None` without support.
     ///
     /// # Panics
     /// If there is no such output.
@@ -215,8 +215,8 @@ impl Predictor {
         self.ask(x, output, wanted).map(|_| hessian)
     }
 
-    /// Predictive standard deviation of one output, in its units; `None` without support, infinite where no field that
-    /// takes part has collected errors yet.
+    /// Predictive standard deviation of one output, in its units; `None` without support, infinite if no field that takes
+    /// part has collected errors yet.
     ///
     /// # Panics
     /// If there is no such output.
@@ -225,8 +225,8 @@ impl Predictor {
         self.ask(x, output, Wanted { confidence: Some(&mut confidence), ..Wanted::default() }).map(|_| confidence)
     }
 
-    /// Activation of the nearest receptive field, trustworthy or not: how far `x` is from everything learnt. 0 for a
-    /// query that is not finite or has another length.
+    /// Activation of the nearest receptive field, trustworthy or not: a measure of the distance of `x` from the training
+    /// data. 0 for a query that is not finite or has another length.
     ///
     /// # Panics
     /// If there is no such output.
@@ -236,7 +236,7 @@ impl Predictor {
         max_activation
     }
 
-    /// How activations fall with distance.
+    /// Decay of activations with distance.
     pub fn kernel(&self) -> Kernel {
         self.scale.kernel
     }
@@ -246,17 +246,17 @@ impl Predictor {
         self.cutoff
     }
 
-    /// What inputs are divided by (`n_in`).
+    /// Divisors of the inputs (`n_in`).
     pub fn norm_in(&self) -> &[f64] {
         &self.norm_in
     }
 
-    /// What predictions are multiplied by (`n_out`).
+    /// Factors of the predictions (`n_out`).
     pub fn norm_out(&self) -> &[f64] {
         &self.norm_out
     }
 
-    /// The trustworthy receptive fields of one output, whose predictions are weighed by their activations.
+    /// The trustworthy receptive fields of one output; their predictions are weighted by their activations.
     ///
     /// # Panics
     /// If there is no such output.
@@ -279,7 +279,7 @@ impl Predictor {
         if is_query(x, self.n_in()) { self.ask_checked(x, output, wanted) } else { None }
     }
 
-    /// [`ask`](Self::ask) where `x` is known to be a query.
+    /// [`ask`](Self::ask) for an `x` that has been checked.
     fn ask_checked(&self, x: DVectorView<'_, f64>, output: usize, mut wanted: Wanted<'_>) -> Option<f64> {
         let (table, norm_out) = (&self.outputs[output].table, self.norm_out[output]);
         sweep(&Query { table, scale: &self.scale, x: x.as_slice(), norm_out }, &mut wanted)

@@ -1,4 +1,4 @@
-//! What is asked of an output, and which of its fields take part.
+//! Queries to an output, and the fields that take part in them.
 
 use lanes::Lanes;
 
@@ -11,11 +11,11 @@ pub(super) struct Scale {
     pub(super) kernel: Kernel,
     /// Squared distance beyond which activations are below the cutoff.
     pub(super) squared_radius: f64,
-    /// 1 / `norm_in`: a division costs as much as ten products.
+    /// 1 / `norm_in`, because a division costs as much as ten multiplications.
     pub(super) per_norm_in: Vec<f64>,
 }
 
-/// A question to one output.
+/// A query to one output.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Query<'a> {
     pub(super) table: &'a FieldTable,

@@ -1,11 +1,11 @@
-//! A predictor as it is stored.
+//! The stored form of a predictor.
 
 use serde::{Deserialize, Serialize};
 
 use super::local_model::LocalModel;
 use crate::Kernel;
 
-/// Everything a [`Predictor`](crate::Predictor) is made from.
+/// All data from which a [`Predictor`](crate::Predictor) is made.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct PredictorRecord {

@@ -13,20 +13,20 @@ use super::query::{Active, Query, Scale};
 use crate::Kernel;
 use crate::field::rows::Rows;
 
-/// Requested quantities besides the value. All answers are in the units of inputs and outputs.
+/// Requested quantities besides the value. All results are in the units of inputs and outputs.
 #[derive(Debug, Default)]
 pub(super) struct Wanted<'a> {
-    /// The gradient, one element every `stride`.
+    /// The gradient, with a distance of `stride` between its elements.
     pub(super) gradient: Option<(&'a mut [f64], usize)>,
     /// Second derivatives (n, n).
     pub(super) hessian: Option<&'a mut [f64]>,
-    /// Standard deviation; infinite where no field that takes part has collected errors.
+    /// Standard deviation; infinite if no field that takes part has collected errors.
     pub(super) confidence: Option<&'a mut f64>,
-    /// Activation of the nearest field, whether it takes part or not; answered without support too.
+    /// Activation of the nearest field, whether or not it takes part; also written without support.
     pub(super) max_activation: Option<&'a mut f64>,
 }
 
-/// Memory of a query; each thread has one, so that none allocates more than once.
+/// Memory of a query; one per thread, so that each thread allocates only once.
 #[derive(Debug, Default)]
 struct Scratch {
     x: Vec<f64>,
@@ -43,10 +43,10 @@ thread_local! {
     static SCRATCH: RefCell<Scratch> = RefCell::default();
 }
 
-/// The weighted mean of the local predictions, and what else is wanted; `None` without support.
+/// The weighted mean of the local predictions, and the other requested quantities; `None` without support.
 ///
-/// Two dimensions have separate code, since their arithmetic is shorter than loops around it, and so has a full metric
-/// of two or six.
+/// There is separate code for two dimensions, because their arithmetic is shorter than loops around it, and for a full
+/// metric with two or six.
 pub(super) fn sweep(query: &Query<'_>, wanted: &mut Wanted<'_>) -> Option<f64> {
     SCRATCH.with_borrow_mut(|scratch| {
         scratch.make_room(query.table);
@@ -79,7 +79,7 @@ impl Scratch {
     }
 }
 
-/// A query on its way.
+/// A query in progress.
 struct Sweep<'a, 'w> {
     query: &'a Query<'a>,
     wanted: &'a mut Wanted<'w>,
@@ -89,7 +89,7 @@ struct Sweep<'a, 'w> {
 /// Any number of dimensions.
 const ANY: usize = 0;
 
-/// A [`Sweep`], compiled for the processor at hand, for one kind of metric and, unless it is [`ANY`], for one number of
+/// A [`Sweep`], compiled for the actual processor, for one kind of metric and, unless it is [`ANY`], for one number of
 /// dimensions: loops over these unroll, and sums stay in registers.
 struct Known<'a, 'w, const FULL: bool, const N: usize>(Sweep<'a, 'w>);
 
@@ -105,7 +105,7 @@ impl<const FULL: bool, const N: usize> pulp::WithSimd for Known<'_, '_, FULL, N>
     }
 }
 
-/// For a processor without vector instructions, where nothing unrolls; not inlined, so that no other code carries it along.
+/// For a processor without vector instructions, where nothing unrolls; not inlined, so that other code does not include it.
 #[cold]
 #[inline(never)]
 fn without_vectors<const FULL: bool>(sweep: Sweep<'_, '_>) -> Option<f64> {
@@ -164,8 +164,8 @@ fn least(numbers: Lanes) -> f64 {
     numbers.into_iter().fold(f64::INFINITY, |least, q| if q < least { q } else { least })
 }
 
-/// Finds the blocks with activated fields, and how many they are; without a branch, since which are near cannot be
-/// predicted. Returns the least squared distances of all fields, in each lane, too.
+/// Finds the blocks with activated fields, and their number, without a branch, because which blocks are near is
+/// unpredictable. Also returns the least squared distances of all fields, in each lane.
 #[inline(always)]
 fn find<S: Simd>(
     simd: S,
@@ -197,7 +197,7 @@ fn find<S: Simd>(
     (nearest, count)
 }
 
-/// Distances become activations of the fields that take part. Returns Σ w and Σ w y.
+/// Converts distances to activations of the fields that take part. Returns Σ w and Σ w y.
 #[inline(always)]
 fn weigh<S: Simd>(
     simd: S,

@@ -11,7 +11,7 @@ pub enum Kernel {
     BiSquare,
 }
 
-/// An activation and its first two derivatives by q.
+/// An activation and its first two derivatives with respect to q.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct Activation<T> {
     pub(crate) w: T,
@@ -37,7 +37,7 @@ impl Kernel {
         }
     }
 
-    /// The squared distance at which the activation has fallen to `w`, in (0, 1].
+    /// The squared distance at which the activation has decreased to `w`, in (0, 1].
     pub(crate) fn squared_radius(self, w: f64) -> f64 {
         match self {
             Kernel::Gaussian => -2.0 * w.ln(),

@@ -1,4 +1,4 @@
-//! Parameters of a model, checked, and the quantities derived from them.
+//! Checked parameters of a model, and quantities derived from them.
 
 pub(crate) mod kernel;
 pub(crate) mod params;
@@ -11,14 +11,14 @@ use crate::{LwprError, LwprParams, Metric, MetricAdaptation};
 /// Activation below which a field does not learn from a sample.
 const TRAINING_FLOOR: f64 = 0.001;
 
-/// Normalised values above this are refused: fourth powers must stay finite.
+/// Larger normalised values are refused, because fourth powers must stay finite.
 const LARGEST: f64 = 1e50;
 
-/// Most inputs or outputs, and most inputs with a full metric, which has the square of it in each field.
+/// Maximum number of inputs or outputs, and of inputs with a full metric, whose square is stored in each field.
 const MOST_DIMENSIONS: usize = 1 << 16;
 const MOST_TURNING: usize = 1 << 10;
 
-/// Checked parameters and what follows from them.
+/// Checked parameters and derived quantities.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Settings {
     pub(crate) params: LwprParams,
@@ -34,7 +34,7 @@ pub(crate) struct Settings {
     pub(crate) gamma: f64,
     /// Squared distance within which a field learns from a sample.
     pub(crate) training_squared_radius: f64,
-    /// Squared distance beyond which a field matters neither for learning nor for making fields.
+    /// Squared distance beyond which a field affects neither learning nor the creation of fields.
     pub(crate) squared_radius: f64,
 }
 
@@ -69,15 +69,15 @@ impl Settings {
         matches!(self.params.adaptation, MetricAdaptation::Meta { .. })
     }
 
-    /// Whether the rows of a field are too short to keep vector registers busy, so that fields are best looked at several
-    /// at a time.
+    /// Whether the rows of a field are too short to fill vector registers, so that several fields are processed at a
+    /// time.
     #[inline(always)]
     pub(crate) fn narrow(&self) -> bool {
         self.width <= 8
     }
 
-    /// Whether a batch may go field by field, several fields side by side: few dimensions, for each of which there is
-    /// code, and no field that vanishes in between.
+    /// Whether a batch may go field by field, with several fields side by side: few dimensions, for each of which there
+    /// is specialised code, and no removal of fields in between.
     pub(crate) fn side_by_side(&self) -> bool {
         let served = match self.params.metric {
             Metric::Diagonal => matches!(self.n_in, 2 | 3 | 6),
@@ -86,12 +86,12 @@ impl Settings {
         served && self.params.w_prune == 1.0
     }
 
-    /// How many numbers of M decide about distances: its diagonal, or its upper triangle.
+    /// Number of values of M that determine distances: its diagonal, or its upper triangle.
     pub(crate) fn shape_len(&self) -> usize {
         self.params.metric.len(self.n_in)
     }
 
-    /// Refuses what is not finite, or so large that its powers would not be.
+    /// Refuses values that are not finite, or so large that their powers would not be.
     pub(crate) fn check(&self, values: &[f64], side: Side, sample: usize) -> Result<(), LwprError> {
         let norm = match side {
             Side::Input => &self.norm_in,
@@ -107,7 +107,7 @@ impl Settings {
     }
 }
 
-/// Refuses numbers that are not finite, column after column.
+/// Refuses numbers that are not finite, column by column.
 pub(crate) fn require_finite(values: DMatrixView<'_, f64>, side: Side) -> Result<(), LwprError> {
     for (sample, column) in values.column_iter().enumerate() {
         if let Some(dimension) = column.iter().position(|value| !value.is_finite()) {
@@ -131,13 +131,13 @@ fn check_dimensions(metric: Metric, n_in: usize, n_out: usize) -> Result<(), Lwp
     Ok(())
 }
 
-/// Whether a normalised value is finite and its powers will be.
+/// Whether a normalised value and its powers are finite.
 fn is_usable(value: f64) -> bool {
     value.abs() <= LARGEST
 }
 
 impl Metric {
-    /// How many numbers of M decide about distances in `n` dimensions.
+    /// Number of values of M that determine distances in `n` dimensions.
     #[inline(always)]
     pub(crate) fn len(self, n: usize) -> usize {
         match self {
@@ -157,7 +157,7 @@ fn check_scalars(p: &LwprParams) -> Result<(), LwprError> {
     let positive = |v: f64| v > 0.0 && v.is_finite();
     let non_negative = |v: f64| v >= 0.0 && v.is_finite();
     let unit = |v: f64| v > 0.0 && v <= 1.0;
-    // With less a field forgets nearly everything at each sample, and its sums run dry.
+    // With a smaller value a field forgets nearly everything at each sample, and its sums vanish.
     let remembers = |v: f64| (0.5..=1.0).contains(&v);
     let rate = match p.adaptation {
         MetricAdaptation::Meta { rate } => rate,
@@ -204,7 +204,7 @@ fn isotropic(d: f64, metric: Metric, width: usize, n: usize) -> Vec<f64> {
     m
 }
 
-/// The upper factor M of D = MᵀM, in rows as the fields hold it.
+/// The upper factor M of D = MᵀM, in the row layout of the fields.
 fn factor(metric: &DMatrix<f64>, shape: Metric, width: usize, n: usize) -> Result<Vec<f64>, LwprError> {
     if metric.shape() != (n, n) {
         return Err(LwprError::MetricShape { shape: metric.shape(), n_in: n });

@@ -7,10 +7,10 @@ use crate::Kernel;
 /// Shape of the distance metric D of every receptive field.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum Metric {
-    /// One width for each input: O(n) a sample and field.
+    /// One width for each input: O(n) per sample and field.
     #[default]
     Diagonal,
-    /// Fields may turn and stretch in any direction: O(n³) a sample and field.
+    /// Fields may be rotated and stretched in any direction: O(n³) per sample and field.
     Full,
 }
 
@@ -29,21 +29,21 @@ pub enum MetricAdaptation {
     },
 }
 
-/// Which of two overlapping receptive fields is removed when the activation of both exceeds `w_prune`.
+/// The choice of which of two overlapping receptive fields is removed when the activation of both exceeds `w_prune`.
 ///
 /// Width is the trace of the metric D of *normalised* inputs, not of inputs in their own units.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum Pruning {
-    /// The wider one (smaller trace of D), as the C library does.
+    /// The wider one (smaller trace of D), as in the C library.
     #[default]
     Wider,
-    /// The narrower one (larger trace of D), as the article and the library's manual say.
+    /// The narrower one (larger trace of D), as stated in the article and the library's manual.
     Narrower,
 }
 
 /// Parameters of a model; the defaults are those of the C library.
 ///
-/// Sizes speak of *normalised* data x/`norm_in`, y/`norm_out`.
+/// Sizes refer to *normalised* data x/`norm_in`, y/`norm_out`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct LwprParams {
@@ -62,27 +62,27 @@ pub struct LwprParams {
     pub kernel: Kernel,
     /// Weight γ of the penalty on large metrics, which keeps fields from shrinking to points.
     pub penalty: f64,
-    /// A sample that activates no field above this makes a new one; in (0, 1).
+    /// A sample that activates no field above this value creates a new one; in (0, 1).
     pub w_gen: f64,
-    /// Of two fields that one sample activates above this one is removed; in (0, 1], and 1 never removes any.
+    /// If one sample activates two fields above this value, one of them is removed; in (0, 1], and 1 never removes any.
     pub w_prune: f64,
-    /// Which of the two.
+    /// The field to remove.
     pub pruning: Pruning,
     /// Forgetting factor λ of a new field; in [0.5, 1].
     pub init_lambda: f64,
     /// Forgetting factor that it approaches; in [0.5, 1].
     pub final_lambda: f64,
-    /// How slowly: λ ← τλ + (1 − τ)·`final_lambda`; in (0, 1].
+    /// Rate of this approach: λ ← τλ + (1 − τ)·`final_lambda`; in (0, 1].
     pub tau_lambda: f64,
-    /// A field gets another projection when the last one brought its error below this share of the one before.
+    /// A field gets another projection if the last one reduced its error to less than this share of the previous error.
     pub add_threshold: f64,
     /// Initial Σ w s² of a projection, which keeps its first divisions finite.
     pub init_s2: f64,
-    /// Divisors of the inputs (`n_in`), `None` for ones: give the typical spread of each.
+    /// Divisors of the inputs (`n_in`), `None` for ones; use the typical spread of each.
     pub norm_in: Option<DVector<f64>>,
-    /// Divisors of the targets (`n_out`), `None` for ones: give their standard deviations.
+    /// Divisors of the targets (`n_out`), `None` for ones; use their standard deviations.
     pub norm_out: Option<DVector<f64>>,
-    /// Refuse samples that would need more receptive fields than this for one output; `None` for no limit.
+    /// Maximum number of receptive fields per output; samples that would need more are refused. `None` for no limit.
     pub max_receptive_fields: Option<usize>,
 }
 
@@ -111,7 +111,7 @@ impl Default for LwprParams {
     }
 }
 
-/// A matrix as nalgebra writes it, numbers, rows, columns: its shape is checked before it is believed.
+/// A matrix in nalgebra's form: numbers, rows, columns. Its shape is checked first.
 fn matrix<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<DMatrix<f64>>, D::Error> {
     let Some((numbers, rows, columns)) = Option::<(Vec<f64>, usize, usize)>::deserialize(deserializer)? else {
         return Ok(None);

@@ -16,10 +16,10 @@ use crate::{Lwpr, LwprError, LwprParams, Predictor, Side};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Training {
-    /// Parameters of LWPR. Where `norm_out` is `None`, each output is divided by its standard deviation; ones leave the
-    /// outputs as they are.
+    /// Parameters of LWPR. If `norm_out` is `None`, each output is divided by its standard deviation; ones leave the
+    /// outputs unchanged.
     pub params: LwprParams,
-    /// How often all samples are learnt, each time in a fresh random order; 10 by default.
+    /// Number of passes over all samples, each in a new random order; 10 by default.
     pub passes: usize,
     /// Receptive fields take part in a prediction if their activation exceeds this; in [0, 1), 1e-3 by default.
     pub cutoff: f64,
@@ -35,8 +35,8 @@ impl Training {
     /// Learns `ys` (`n_out`, N) from `xs` (`n_in`, N); samples are columns.
     ///
     /// # Errors
-    /// [`LwprError::Parameter`] for `passes`, `cutoff` or a parameter out of range, [`LwprError::EmptyBatch`], and whatever
-    /// [`LwprParams::build`] and [`Lwpr::fit_batch`] refuse.
+    /// [`LwprError::Parameter`] for `passes`, `cutoff` or a parameter out of range, [`LwprError::EmptyBatch`], and the
+    /// errors of [`LwprParams::build`] and [`Lwpr::fit_batch`].
     pub fn fit<R: Rng + ?Sized>(
         &self,
         xs: DMatrixView<'_, f64>,
@@ -50,7 +50,7 @@ impl Training {
         if ys.ncols() == 0 {
             return Err(LwprError::EmptyBatch);
         }
-        // Before they are centred, which would spread one bad value over all samples of its output.
+        // Checked before centring, which would spread one bad value over all samples of its output.
         require_finite(ys, Side::Output)?;
         let mean = DVector::from_iterator(ys.nrows(), ys.row_iter().map(|row| mean(row.iter().copied())));
         let mut centred = ys.into_owned();
@@ -69,7 +69,7 @@ impl Training {
 
 /// LWPR on outputs that are centred and divided by `norm_out`, by default their standard deviations.
 ///
-/// It can be stored with serde: version, cutoff, means and the model; what is read back predicts the same bits.
+/// It can be stored with serde: version, cutoff, means and the model. After reading, it predicts the same bits.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(try_from = "StandardisedRecord", into = "StandardisedRecord")]
 pub struct StandardisedModel {
@@ -80,13 +80,13 @@ pub struct StandardisedModel {
 }
 
 impl StandardisedModel {
-    /// From parts that have been checked.
+    /// From checked parts.
     pub(crate) fn new(model: Arc<Lwpr>, mean: DVector<f64>, cutoff: f64) -> Self {
         StandardisedModel { predictor: model.predictor(cutoff), model, mean, cutoff }
     }
 
-    /// The same model, of which receptive fields take part as soon as their activation exceeds `cutoff`. Roll-outs that
-    /// leave the data want a tiny one, 1e-9.
+    /// The same model with another cutoff: receptive fields take part if their activation exceeds `cutoff`. Roll-outs that
+    /// leave the data need a tiny one, 1e-9.
     ///
     /// # Errors
     /// [`LwprError::Parameter`] if `cutoff` is not at least 0 and less than 1.
@@ -105,7 +105,7 @@ impl StandardisedModel {
         self.model.n_out()
     }
 
-    /// Means of the training outputs (`n_out`): the predictions where there is no support.
+    /// Means of the training outputs (`n_out`): the predictions without support.
     pub fn mean(&self) -> &DVector<f64> {
         &self.mean
     }
@@ -133,7 +133,7 @@ impl StandardisedModel {
         self.predictor.value(x, output).is_some()
     }
 
-    /// Prediction of one output at `x` (`n_in`); its mean without support.
+    /// Prediction of one output at `x` (`n_in`); the output's mean without support.
     ///
     /// # Panics
     /// If there is no such output.
@@ -141,10 +141,10 @@ impl StandardisedModel {
         self.mean[output] + self.predictor.value(x, output).unwrap_or(0.0)
     }
 
-    /// The derivative of one output by the input (`n_in`), written into `gradient`; zero without support.
+    /// The derivative of one output with respect to the input (`n_in`), written into `gradient`; zero without support.
     ///
     /// # Panics
-    /// If there is no such output, or `gradient` has not `n_in` elements.
+    /// If there is no such output, or `gradient` does not have `n_in` elements.
     pub fn gradient_into(&self, x: DVectorView<'_, f64>, output: usize, mut gradient: DVectorViewMut<'_, f64>) {
         if self.predictor.value_and_gradient_into(x, output, gradient.as_view_mut()).is_none() {
             gradient.fill(0.0);
@@ -159,16 +159,16 @@ pub(crate) fn check_cutoff(cutoff: f64) -> Result<(), LwprError> {
     Err(LwprError::Parameter { name: "cutoff", value: cutoff, range: "at least 0 and less than 1" })
 }
 
-/// Divided before it is summed, since a sum of finite values may overflow.
+/// Divides before summing, because a sum of finite values may overflow.
 fn mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {
     let count = values.len() as f64;
     values.map(|value| value / count).sum()
 }
 
-/// By how much equal values and their mean may differ, as a share of the mean.
+/// Maximum relative difference between equal values and their mean.
 const ROUNDING: f64 = 1e-13;
 
-/// Standard deviation of values about their mean, which was subtracted; 1 where they are all equal, so that it can divide.
+/// Standard deviation of values from which their mean was subtracted; 1 if they are all equal, because it is a divisor.
 fn spread(values: impl ExactSizeIterator<Item = f64> + Clone, mean: f64) -> f64 {
     let count = values.len() as f64;
     let largest = values.clone().fold(0.0_f64, |largest, value| largest.max(value.abs()));

@@ -1,4 +1,4 @@
-//! A standardised model as it is stored.
+//! The stored form of a standardised model.
 
 use std::sync::Arc;
 
@@ -8,10 +8,10 @@ use serde::{Deserialize, Serialize};
 use crate::standardised::check_cutoff;
 use crate::{Lwpr, LwprError, StandardisedModel};
 
-/// The form that is written; others are refused.
+/// The version that is written; others are refused.
 const VERSION: u32 = 1;
 
-/// A [`StandardisedModel`].
+/// Record of a [`StandardisedModel`].
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct StandardisedRecord {

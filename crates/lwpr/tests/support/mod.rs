@@ -6,7 +6,7 @@ use proptest::prelude::*;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-/// A model's size and parameters, and data to train it with.
+/// A model's size and parameters, and data for training.
 #[derive(Debug, Clone)]
 pub(crate) struct Case {
     pub n_in: usize,
@@ -44,16 +44,16 @@ fn shape() -> impl Strategy<Value = (Metric, Kernel, MetricAdaptation, f64)> {
     (metric, kernel, adaptation(), w_prune)
 }
 
-/// Few inputs, as a rule; sometimes more than any vector register holds.
+/// Usually few inputs, sometimes more than any vector register holds.
 fn n_in() -> impl Strategy<Value = usize> {
     prop_oneof![6 => 1_usize..=9, 1 => 10_usize..=34]
 }
 
-/// Pruning, smallest variance of a projection, last forgetting factor, limit of fields, and whether the metric is given
+/// Pruning, minimum variance of a projection, final forgetting factor, limit on fields, and whether the metric is given
 /// as a matrix.
 fn rest() -> impl Strategy<Value = (Pruning, f64, f64, Option<usize>, bool)> {
     let pruning = prop_oneof![Just(Pruning::Wider), Just(Pruning::Narrower)];
-    // As many as there may be samples: the limit itself is tested with the bad input.
+    // The limit exceeds the number of samples; the limit itself is tested in `bad_input`.
     let limit = prop_oneof![Just(None), (400_usize..1000).prop_map(Some)];
     (pruning, -12.0..-6.0, 0.999..=1.0, limit, any::<bool>())
         .prop_map(|(pruning, exponent, last, limit, matrix)| (pruning, 10_f64.powf(exponent), last, limit, matrix))
@@ -69,7 +69,7 @@ fn metric_matrix(metric: Metric, n: usize, width: f64, rng: &mut ChaCha8Rng) -> 
     diagonal
 }
 
-/// Every parameter is drawn. The targets are smooth functions with noise.
+/// A case with every parameter random. The targets are smooth functions with noise.
 pub(crate) fn case(samples: usize) -> impl Strategy<Value = Case> {
     let sizes = (n_in(), 1_usize..=3, any::<u64>());
     let speeds = (1.0..200.0, 1e-8..1e-3, 0.002..0.4, 0.2..0.99, 0.98..0.9995, 0.9..0.9999);

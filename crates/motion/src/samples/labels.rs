@@ -1,6 +1,6 @@
-/// Names of the constraints that acted along a movement, each from one sample on until the next; the last holds to the end.
+/// Names of the constraints along a movement. Each holds from one sample until the next begins, the last until the end.
 ///
-/// A name may be empty, as where a recording leaves a field blank.
+/// A name may be empty, for instance where a recording leaves a field blank.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Labels {
     /// First sample and name of each run: the first begins at 0, and neighbours have different names.
@@ -8,14 +8,14 @@ pub struct Labels {
 }
 
 impl<S: Into<String>> From<S> for Labels {
-    /// One name for all samples.
+    /// The same name for all samples.
     fn from(name: S) -> Self {
         Labels { runs: vec![(0, name.into())] }
     }
 }
 
 impl Labels {
-    /// Of the name of every sample, in their order; none if all are empty.
+    /// Labels from the name of every sample, in order; `None` if all are empty.
     pub fn of_samples<S: AsRef<str>>(names: impl IntoIterator<Item = S>) -> Option<Self> {
         let mut labels: Option<Labels> = None;
         for (sample, name) in names.into_iter().enumerate() {
@@ -27,7 +27,7 @@ impl Labels {
         labels.filter(|labels| !labels.is_blank())
     }
 
-    /// From this sample on, which comes after all switches so far, another name holds; nothing changes if it is the same.
+    /// Starts another name at this sample, which must be after all switches so far; has no effect if the name is the same.
     pub fn switch(&mut self, sample: usize, name: &str) {
         if self.runs.last().is_none_or(|(_, last)| last != name) {
             self.runs.push((sample, name.to_owned()));
@@ -39,23 +39,23 @@ impl Labels {
         &self.runs[self.run(sample)].1
     }
 
-    /// How many times the name changed up to a sample.
+    /// Number of switches up to a sample.
     pub fn run(&self, sample: usize) -> usize {
         self.runs.partition_point(|(first, _)| *first <= sample) - 1
     }
 
-    /// How many times it changes.
+    /// Number of switches.
     pub fn switches(&self) -> usize {
         self.runs.len() - 1
     }
 
-    /// How many of `samples` samples each name holds for until the next, in their order.
+    /// Length of each run in samples, in order, if there are `samples` samples.
     pub fn lengths(&self, samples: usize) -> impl Iterator<Item = usize> {
         let ends = self.runs.iter().skip(1).map(|(first, _)| *first).chain([samples]);
         self.runs.iter().zip(ends).map(|((first, _), end)| end - first)
     }
 
-    /// The one name of all samples.
+    /// The name of all samples, if it is the same.
     pub fn only(&self) -> Option<&str> {
         match &self.runs[..] {
             [(_, name)] => Some(name),
@@ -68,7 +68,7 @@ impl Labels {
         self.runs.iter().all(|(_, name)| name.is_empty())
     }
 
-    /// The names of some samples, in the order given; none if none of them has one.
+    /// The names of some samples, in the given order; `None` if all are empty.
     #[must_use]
     pub fn chosen(&self, samples: impl IntoIterator<Item = usize>) -> Option<Labels> {
         Labels::of_samples(samples.into_iter().map(|sample| self.at(sample)))
@@ -82,7 +82,7 @@ mod tests {
     use super::*;
 
     proptest! {
-        /// Every sample has the name that it was given, and chosen ones theirs.
+        /// Every sample has its given name, also after selection.
         #[test]
         fn samples_have_their_names(names in prop::collection::vec("[ab]?", 1..30), picks in prop::collection::vec(0usize..30, 1..20)) {
             let picks: Vec<usize> = picks.into_iter().map(|pick| pick % names.len()).collect();

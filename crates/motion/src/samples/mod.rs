@@ -1,4 +1,4 @@
-//! Samples of movements: which one, which of them, and under which constraint.
+//! Samples of movements: indices, sets, and labels of constraints.
 
 mod labels;
 mod sample_index;

@@ -1,10 +1,10 @@
 use serde::{Deserialize, Serialize};
 
-/// Which sample of which trajectory, both counted from 0. Ordered by trajectory, then by sample.
+/// Index of a sample in a trajectory, both counted from 0. Ordered by trajectory, then by sample.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct SampleIndex {
-    /// The trajectory.
+    /// Index of the trajectory.
     pub trajectory: usize,
-    /// Its sample.
+    /// Index of the sample.
     pub sample: usize,
 }

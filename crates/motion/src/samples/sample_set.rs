@@ -8,14 +8,14 @@ pub struct SampleSet {
 }
 
 impl SampleSet {
-    /// These samples, in any order; one may be named twice.
+    /// The set of these samples, which may be in any order and repeated.
     pub fn of(samples: &[SampleIndex]) -> Self {
         let mut samples = samples.to_vec();
         samples.sort_unstable();
         SampleSet { samples }
     }
 
-    /// Whether a sample is among them.
+    /// Whether the set contains a sample.
     pub fn contains(&self, sample: SampleIndex) -> bool {
         self.samples.binary_search(&sample).is_ok()
     }

@@ -1,11 +1,11 @@
-//! How far numbers of one kind are from those of the reference.
+//! Differences between our numbers of one kind and those of the reference.
 
-/// The largest difference so far, each over the largest reference value of its array.
+/// The largest difference so far, relative to the largest reference value of its array.
 #[derive(Debug)]
 pub(super) struct Agreement {
-    /// What the numbers are.
+    /// Description of the numbers.
     pub(super) what: &'static str,
-    /// What counts as agreement.
+    /// Largest difference that counts as agreement.
     pub(super) tolerance: f64,
     pub(super) worst: f64,
 }
@@ -15,7 +15,7 @@ impl Agreement {
         Agreement { what, tolerance, worst: 0.0 }
     }
 
-    /// Compares an array with the reference's; another length, or a number that is none, is infinitely far.
+    /// Compares an array with the reference's; a different length or NaN counts as an infinite difference.
     pub(super) fn compare(&mut self, ours: impl IntoIterator<Item = f64>, theirs: &[f64]) {
         let ours: Vec<f64> = ours.into_iter().collect();
         let largest = theirs.iter().fold(0.0, |largest, theirs| f64::max(largest, theirs.abs()));
@@ -28,7 +28,7 @@ impl Agreement {
         self.worst = self.worst.max(if ours.len() == theirs.len() { relative } else { f64::INFINITY });
     }
 
-    /// Takes in differences that are known already; NaN is infinitely far.
+    /// Adds differences that are already known; NaN counts as infinite.
     pub(super) fn differ_by(&mut self, differences: impl IntoIterator<Item = f64>) {
         for difference in differences {
             self.worst = self.worst.max(if difference.is_nan() { f64::INFINITY } else { difference.abs() });

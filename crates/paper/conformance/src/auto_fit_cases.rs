@@ -1,4 +1,4 @@
-//! Whole fits of the slope GP, held to bounds: another optimiser ends at other amplitudes.
+//! Complete fits of the slope GP, compared with bounds, because another optimiser finds other amplitudes.
 
 use std::path::Path;
 
@@ -14,7 +14,7 @@ use smoothing::Smoother;
 use super::slope_cases::view;
 use super::{Agreement, columns, read_json};
 
-/// Trajectories of samples of numbers.
+/// Numbers by trajectory, sample and dimension.
 type Series = Vec<Vec<Vec<f64>>>;
 
 #[derive(Debug, Deserialize)]
@@ -38,7 +38,7 @@ struct Prototype {
     model: ModelKind,
 }
 
-/// Errors, R², the kind of model and the curl test, each over the bound that the reference fits set.
+/// Errors, R², the kind of model and the curl test, each relative to the bound that the reference fits set.
 pub(super) fn check(file: &Path) -> anyhow::Result<Vec<Agreement>> {
     let systems: Vec<System> = read_json(file)?;
     let mut agreements = vec![
@@ -81,7 +81,7 @@ impl System {
         let learnt = DMatrix::from_columns(&actions);
         let projectors: Vec<DMatrix<f64>> = self.null_space_projectors.concat().iter().map(|n| columns(n)).collect();
         let nupe = metrics::nupe(&truth, &learnt)?;
-        // A projector is symmetric: rows are as good as columns.
+        // A projector is symmetric, so rows can be read as columns.
         let ncpe = metrics::ncpe(&truth, &learnt, |sample, mut difference| {
             let projected = &projectors[sample] * &difference;
             difference.copy_from(&projected);

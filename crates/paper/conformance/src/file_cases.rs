@@ -1,4 +1,4 @@
-//! files/expected.json: recordings of many formats, what must be read from them and what must be said.
+//! files/expected.json: recordings in many formats, with the expected contents and messages.
 
 use std::path::Path;
 
@@ -17,7 +17,7 @@ struct Expected {
     cases: Vec<Case>,
 }
 
-/// A file, the flags to read it with, and what comes of it.
+/// A file, the flags for reading it, and the expected results.
 #[derive(Debug, Deserialize)]
 struct Case {
     path: String,
@@ -46,7 +46,7 @@ enum Kind {
     Refuse,
 }
 
-/// What is known of the recordings.
+/// Expected properties of the recordings.
 #[derive(Debug, Default, Deserialize)]
 struct Expect {
     episodes: Option<usize>,
@@ -61,14 +61,14 @@ struct Expect {
     velocities_sha256: Option<String>,
 }
 
-/// How many readings were compared, and what was wrong.
+/// Number of readings compared, and their faults.
 #[derive(Debug, Default)]
 pub(super) struct Readings {
     pub(super) compared: usize,
     pub(super) faults: Vec<String>,
 }
 
-/// Reads every file of the list; none if there is no list.
+/// Reads every file of the list; returns none if there is no list.
 pub(super) fn check(list: &Path) -> anyhow::Result<Readings> {
     let mut readings = Readings::default();
     if !list.is_file() {
@@ -106,7 +106,7 @@ impl Attempt {
         says(&self.says, &text)
     }
 
-    /// What is found while reading and preparing; what is expected is what was not left out.
+    /// Compares the findings of reading and preparing; the expectations apply to the episodes that were not left out.
     fn warned(&self, mut recordings: Recordings) -> anyhow::Result<()> {
         if self.args.contains("--trim-still") {
             prepare::trim_still(&mut recordings);
@@ -162,7 +162,7 @@ fn same<T: PartialEq + std::fmt::Debug>(what: &str, expected: Option<&T>, found:
     }
 }
 
-/// SHA-256 of all numbers, sample after sample, as little-endian f64.
+/// SHA-256 of all numbers, sample by sample, as little-endian f64.
 fn hash<'a>(matrices: impl Iterator<Item = &'a DMatrix<f64>>) -> String {
     let mut hasher = Sha256::new();
     for number in matrices.flat_map(DMatrix::as_slice) {
@@ -171,7 +171,7 @@ fn hash<'a>(matrices: impl Iterator<Item = &'a DMatrix<f64>>) -> String {
     hasher.finalize().iter().map(|byte| format!("{byte:02x}")).collect::<Vec<_>>().concat()
 }
 
-/// The flags of a case.
+/// Parses the flags of a case.
 fn options(args: &str) -> anyhow::Result<ReadOptions> {
     let mut options = ReadOptions::default();
     let mut words = args.split_whitespace();
@@ -205,7 +205,7 @@ fn options(args: &str) -> anyhow::Result<ReadOptions> {
     Ok(options)
 }
 
-/// A value by the name that files of settings use.
+/// A value from its name in settings files.
 fn named<T: serde::de::DeserializeOwned>(name: &str) -> anyhow::Result<T> {
     Ok(serde_json::from_value(serde_json::Value::String(name.to_owned()))?)
 }

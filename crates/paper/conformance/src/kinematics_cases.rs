@@ -25,14 +25,14 @@ struct Configuration {
     frames: BTreeMap<String, Frame>,
 }
 
-/// A pose (4, 4) in the root frame and the Jacobian (6, n) at its origin, world axes; row by row.
+/// A pose (4, 4) in the root frame and the Jacobian (6, n) at its origin, in world axes; row by row.
 #[derive(Debug, Deserialize)]
 struct Frame {
     pose: Vec<Vec<f64>>,
     jacobian: Vec<Vec<f64>>,
 }
 
-/// Poses and Jacobians over all configurations and frames, whichever way they are computed.
+/// Poses and Jacobians over all configurations and frames, with every way of computing them.
 pub(super) fn check(file: &Path) -> anyhow::Result<Vec<Agreement>> {
     let case: Case = read_json(file)?;
     let urdf = file.with_file_name(&case.urdf);

@@ -1,4 +1,4 @@
-//! Kinematics, LWPR, smoothing and Gaussian processes against reference cases that other programs computed, and files that
+//! Compares kinematics, LWPR, smoothing and Gaussian processes with reference cases from other programs, and reads files that
 //! other programs wrote.
 
 mod agreement;
@@ -21,21 +21,21 @@ use serde_json::Value;
 
 use self::agreement::Agreement;
 
-/// Folders with something to compare.
+/// The folders with reference cases.
 const FOLDERS: [&str; 6] = ["lwpr", "kinematics", "slope_gp", "reading", "urdf_traps", "files"];
 
-/// Largest difference that counts as agreement unless said: absolute for robots (metres, radians), else relative to the
+/// Default for the largest difference that counts as agreement: absolute for robots (metres, radians), else relative to the
 /// largest reference value of the same kind.
 const TOLERANCE: f64 = 1e-10;
 
-/// Compares the numbers of a file, each kind with a tolerance of its own.
+/// Compares the numbers of a file, each kind with a separate tolerance.
 type Check = fn(&Path) -> anyhow::Result<Vec<Agreement>>;
 
-/// What is compared in lwpr/*.json and kinematics/*.json: files of one kind, which none of them names.
+/// The checks of lwpr/*.json and kinematics/*.json. Each folder contains one kind of file, without a name.
 const LWPR: [(&str, Check); 1] = [("", lwpr_cases::check)];
 const KINEMATICS: [(&str, Check); 1] = [("", kinematics_cases::check)];
 
-/// What is compared in slope_gp/*.json, by kind of file.
+/// The checks of slope_gp/*.json, by kind of file.
 const SLOPE_GP: [(&str, Check); 7] = [
     ("smoother", smoothing_cases::check_smoother),
     ("fusion", smoothing_cases::check_fusion),
@@ -46,7 +46,7 @@ const SLOPE_GP: [(&str, Check); 7] = [
     ("auto_fit", auto_fit_cases::check),
 ];
 
-/// The same in reading/*.json.
+/// The checks of reading/*.json, by kind of file.
 const READING: [(&str, Check); 3] = [
     ("direct", reading_cases::check_direct),
     ("near", reading_cases::check_near),
@@ -54,7 +54,7 @@ const READING: [(&str, Check); 3] = [
 ];
 
 /// Compares everything in a folder with lwpr/*.json, kinematics/*.json and their robots, slope_gp/*.json, reading/*.json,
-/// urdf_traps/expected.json and files/expected.json with their files; says, line by line, how far each kind of number is off.
+/// urdf_traps/expected.json and files/expected.json with their files. `say` receives one line per kind of number, with its difference.
 ///
 /// # Errors
 /// If a file disagrees, or if there is none.
@@ -91,10 +91,10 @@ pub fn compare(vectors: &Path, say: fn(&str)) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// How a file is compared, or why it is not: by its member `kind`, which in a list its first entry has, or without that
-/// by how its name begins.
+/// The check of a file, or why there is none. The file's kind is its member `kind` (in a list, that of the first entry), or
+/// else the beginning of its name.
 fn check_of(file: &Path, checks: &[(&str, Check)]) -> anyhow::Result<Result<Check, String>> {
-    // A folder of one kind: its files need not name it.
+    // In a folder with one kind, the files need not name it.
     if let [("", check)] = checks {
         return Ok(Ok(*check));
     }
@@ -112,7 +112,7 @@ fn check_of(file: &Path, checks: &[(&str, Check)]) -> anyhow::Result<Result<Chec
     Ok(found.map(|(_, check)| *check).map_err(|why| format!("{why}; known: {}", known())))
 }
 
-/// Folders of which nothing is compared.
+/// Reports the folders that are not compared.
 fn unknown_folders(vectors: &Path) -> anyhow::Result<Vec<String>> {
     let entries = fs::read_dir(vectors).with_context(|| format!("cannot list {}", vectors.display()))?;
     let mut paths = entries.map(|entry| Ok(entry?.path())).collect::<anyhow::Result<Vec<_>>>()?;
@@ -122,7 +122,7 @@ fn unknown_folders(vectors: &Path) -> anyhow::Result<Vec<String>> {
     Ok(paths.iter().map(line).collect())
 }
 
-/// Whether all kinds of numbers of a file agree; says how far each is off.
+/// Whether all kinds of numbers of a file agree; reports the difference of each.
 fn agrees(file: &Path, check: Check, say: fn(&str)) -> anyhow::Result<bool> {
     let agreements = check(file).with_context(|| format!("{} cannot be compared", file.display()))?;
     for agreement in &agreements {
@@ -132,7 +132,7 @@ fn agrees(file: &Path, check: Check, say: fn(&str)) -> anyhow::Result<bool> {
     Ok(agreements.iter().all(Agreement::holds))
 }
 
-/// The JSON files of a folder, in order; none if there is no such folder.
+/// The JSON files of a folder, in order; empty if the folder does not exist.
 fn json_files(folder: &Path) -> anyhow::Result<Vec<PathBuf>> {
     if !folder.is_dir() {
         return Ok(Vec::new());
@@ -149,7 +149,7 @@ fn read_json<T: DeserializeOwned>(file: &Path) -> anyhow::Result<T> {
     serde_json::from_str(&text).with_context(|| format!("{} has another form than expected", file.display()))
 }
 
-/// Rows of a file, one a sample, become columns.
+/// Converts the rows of a file, one per sample, to columns.
 fn columns(rows: &[Vec<f64>]) -> DMatrix<f64> {
     DMatrix::from_fn(rows.first().map_or(0, Vec::len), rows.len(), |i, j| rows[j][i])
 }

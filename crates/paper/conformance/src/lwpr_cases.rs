@@ -1,4 +1,4 @@
-//! Traces of LWPR: trained on the same samples in the same order, it must predict the same.
+//! LWPR's predictions after training on the same samples in the same order.
 
 use std::path::Path;
 
@@ -9,10 +9,10 @@ use serde::Deserialize;
 
 use super::{Agreement, TOLERANCE, columns, read_json};
 
-/// Confidence from here on means that no receptive field was in reach.
+/// From this confidence on, the reference has no receptive field in reach.
 const NO_SUPPORT: f64 = 1e18;
 
-/// Samples times 1 − λ from which a field collects errors.
+/// From this value of (samples × (1 − λ)) on, a field accumulates errors.
 const ERRORS_FROM: f64 = 0.1;
 
 #[derive(Debug, Deserialize)]
@@ -54,7 +54,7 @@ struct Params {
     init_D_diagonal: f64,
 }
 
-/// Values, gradients, activations and confidence.
+/// Compares values, gradients, activations and confidence.
 pub(super) fn check(file: &Path) -> anyhow::Result<Vec<Agreement>> {
     let case: Case = read_json(file)?;
     let mut model = case.params.ours().build(case.n_in, case.n_out)?;
@@ -75,7 +75,8 @@ impl Case {
         Ok(())
     }
 
-    /// Whether no field can have collected errors yet: ours then has no confidence, the reference one of little meaning.
+    /// Whether no field can have accumulated errors yet. Our confidence is then undefined, and the reference's means
+    /// little.
     fn is_young(&self) -> bool {
         let samples = self.passes * self.x_train.len();
         samples as f64 * (1.0 - self.params.init_lambda) < ERRORS_FROM
@@ -88,7 +89,7 @@ impl Case {
                 activation.push((predictor.max_activation(x.as_view(), output), self.max_activation[i][output]));
             }
             let Some(prediction) = predictor.predict(x.as_view()) else {
-                // The reference says so by an enormous confidence; otherwise this is infinitely wrong.
+                // The reference signals this by a huge confidence; otherwise the difference is infinite.
                 let excused = self.confidence[i].iter().any(|&confidence| confidence > NO_SUPPORT);
                 value.push((if excused { 0.0 } else { f64::INFINITY }, 0.0));
                 continue;

@@ -1,4 +1,4 @@
-//! The direct GP, near passes, and which reading the data support. Samples are rows in the files.
+//! The direct GP, near passes, and the reading that the data support. Samples are rows in the files.
 
 use std::path::Path;
 
@@ -66,7 +66,7 @@ struct ReadingCase {
     frozen: Frozen,
 }
 
-/// What both models are made of, noise raised already.
+/// The parameters of both models, with noise already raised.
 #[derive(Debug, Deserialize)]
 struct Frozen {
     slope_blocks: Vec<(String, f64)>,
@@ -89,7 +89,7 @@ struct Prototype {
     hidden: f64,
 }
 
-/// (R1) to (R4).
+/// Compares (R1) to (R4).
 pub(super) fn check_direct(file: &Path) -> anyhow::Result<Vec<Agreement>> {
     let case: DirectCase = read_json(file)?;
     let mut agreements = vec![Agreement::new("direct GP", 1e-9), Agreement::new("gradient of its evidence", 1e-7)];
@@ -119,7 +119,7 @@ pub(super) fn check_direct(file: &Path) -> anyhow::Result<Vec<Agreement>> {
     Ok(agreements)
 }
 
-/// (R9): counts must be the same.
+/// Compares (R9); counts must be equal.
 pub(super) fn check_near(file: &Path) -> anyhow::Result<Vec<Agreement>> {
     let cases: Vec<NearCase> = read_json(file)?;
     let mut agreements = vec![Agreement::new("pairs that pass near", 0.0), Agreement::new("share", 1e-12)];
@@ -136,7 +136,7 @@ pub(super) fn check_near(file: &Path) -> anyhow::Result<Vec<Agreement>> {
     Ok(agreements)
 }
 
-/// The reading of fits of our own; their numbers within a factor 3 where above 1e-3.
+/// The readings of our fits, which must be equal; their numbers must be within a factor of 3 if above 1e-3.
 pub(super) fn check_readings(file: &Path) -> anyhow::Result<Vec<Agreement>> {
     let cases: Vec<ReadingCase> = read_json(file)?;
     let mut agreements =
@@ -164,7 +164,7 @@ pub(super) fn check_readings(file: &Path) -> anyhow::Result<Vec<Agreement>> {
 }
 
 impl ReadingCase {
-    /// (R7) of models with everything given.
+    /// Compares (R7) of models with all parameters given.
     fn compare_frozen(&self, agreement: &mut Agreement) -> anyhow::Result<()> {
         let (frozen, rows) = (&self.frozen, self.rows()?);
         let certain = vec![1.0; rows.len()];

@@ -1,4 +1,5 @@
-//! The slope GP: kernels, evidence, left-out trajectories, and fits with everything given. Samples are rows in the files.
+//! The slope GP: kernels, evidence, left-out trajectories, and fits with all parameters given. Samples are rows in the
+//! files.
 
 use std::path::Path;
 
@@ -37,7 +38,7 @@ struct KernelBlock {
     potential_potential: Option<Table>,
 }
 
-/// Rows as they were, and what is made of them.
+/// The original rows, and the values derived from them.
 #[derive(Debug, Deserialize)]
 struct GivenRows {
     x: Table,
@@ -99,7 +100,7 @@ struct FrozenCase {
     rotational_part: Option<Table>,
 }
 
-/// (S3) to (S5) of every block.
+/// Compares (S3) to (S5) of every block.
 pub(super) fn check_kernels(file: &Path) -> anyhow::Result<Vec<Agreement>> {
     let cases: Vec<KernelCase> = read_json(file)?;
     let mut agreements = vec![Agreement::new("covariances", 1e-13)];
@@ -116,7 +117,7 @@ pub(super) fn check_kernels(file: &Path) -> anyhow::Result<Vec<Agreement>> {
             agreements[0].compare(policies, &reference.policy_slope.concat().concat());
             if let Some(expected) = &reference.potential_slope {
                 let ours = pairs().map(|(i, j)| block.potential_slope(z(i), z2(j), n2(j)).unwrap_or(f64::NAN));
-                // At one and the same state it is 0; the reference has what rounding left of that.
+                // At equal states it is 0; the reference contains rounding errors there.
                 let expected: Vec<f64> =
                     flat(expected).iter().map(|&e| if e.abs() < 1e-15 { 0.0 } else { e }).collect();
                 agreements[0].compare(ours, &expected);
@@ -130,7 +131,7 @@ pub(super) fn check_kernels(file: &Path) -> anyhow::Result<Vec<Agreement>> {
     Ok(agreements)
 }
 
-/// (S8) and (S9).
+/// Compares (S8) and (S9).
 pub(super) fn check_evidence(file: &Path) -> anyhow::Result<Vec<Agreement>> {
     let given: Given<EvidenceCase> = read_json(file)?;
     let mut agreements =
@@ -144,7 +145,7 @@ pub(super) fn check_evidence(file: &Path) -> anyhow::Result<Vec<Agreement>> {
     Ok(agreements)
 }
 
-/// (S10) and (S11), noise raised by κ.
+/// Compares (S10) and (S11), with noise raised by κ.
 pub(super) fn check_left_out(file: &Path) -> anyhow::Result<Vec<Agreement>> {
     let given: Given<LeftOutCase> = read_json(file)?;
     let mut agreements = vec![Agreement::new("scaling", 1e-13), Agreement::new("left-out trajectories", 1e-7)];
@@ -161,7 +162,7 @@ pub(super) fn check_left_out(file: &Path) -> anyhow::Result<Vec<Agreement>> {
     Ok(agreements)
 }
 
-/// (S7), (S13), (S14).
+/// Compares (S7), (S13) and (S14).
 pub(super) fn check_frozen(file: &Path) -> anyhow::Result<Vec<Agreement>> {
     let systems: Vec<FrozenSystem> = read_json(file)?;
     let mut agreements = vec![
@@ -231,7 +232,7 @@ impl GivenRows {
     }
 }
 
-/// Rows of certain velocity, each a sample of a trajectory.
+/// Rows with certain velocities, each a sample of a trajectory.
 pub(super) fn rows(x: &[Vec<f64>], u: &[Vec<f64>], trajectory: &[usize]) -> anyhow::Result<Rows> {
     let columns = |rows: &[Vec<f64>]| DMatrix::from_fn(rows.first().map_or(0, Vec::len), rows.len(), |k, i| rows[i][k]);
     let index = |(sample, &trajectory): (usize, &usize)| SampleIndex { trajectory, sample };

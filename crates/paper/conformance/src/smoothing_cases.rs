@@ -39,7 +39,7 @@ struct FusionCase {
     variance: Vec<Vec<f64>>,
 }
 
-/// The smoother at the noise given, and the noise that it finds itself; axes as they are.
+/// Compares the smoother at the given noise, and the noise that it estimates; axes are not rotated.
 pub(super) fn check_smoother(file: &Path) -> anyhow::Result<Vec<Agreement>> {
     let cases: Vec<SmootherCase> = read_json(file)?;
     let mut agreements = vec![
@@ -72,7 +72,7 @@ impl SmootherCase {
     }
 }
 
-/// Fusion, with the rule and the ratio that it chooses.
+/// Compares fusion, with the rule and ratio that it selects.
 pub(super) fn check_fusion(file: &Path) -> anyhow::Result<Vec<Agreement>> {
     let cases: Vec<FusionCase> = read_json(file)?;
     let mut agreement = Agreement::new("states and variances", 1e-9);
@@ -98,7 +98,7 @@ fn stamped(times: &[Vec<f64>], positions: &Rows) -> anyhow::Result<Vec<Trajector
     Ok(movements.collect::<Result<_, _>>()?)
 }
 
-/// Sample by sample, as our matrices lie in memory.
+/// The numbers sample by sample, in the memory order of our matrices.
 fn flat(rows: &Rows) -> Vec<f64> {
     rows.iter().flatten().flatten().copied().collect()
 }

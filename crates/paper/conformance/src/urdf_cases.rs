@@ -1,4 +1,4 @@
-//! Odd robot descriptions: each must load, or be refused, as expected.
+//! Unusual robot descriptions, each with the expected result: it loads or is refused.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -15,14 +15,14 @@ struct Expected {
     loads: bool,
 }
 
-/// How many files there were, and what was wrong with which.
+/// Number of files, and their faults.
 #[derive(Debug, Default)]
 pub(super) struct Odd {
     pub(super) files: usize,
     pub(super) faults: Vec<String>,
 }
 
-/// Loads every file that `list` names; no list, no files.
+/// Loads every file in `list`; returns none if the list does not exist.
 pub(super) fn check(list: &Path) -> anyhow::Result<Odd> {
     if !list.is_file() {
         return Ok(Odd::default());

@@ -1,5 +1,5 @@
-//! How much hangs on what is fitted: printed cells whose verdict is another where one setting is a fifth smaller or larger.
-//! `cargo xtask leverage` measures it.
+//! Sensitivity to the fitted settings: printed cells whose verdict changes if one setting is a fifth smaller or larger.
+//! Measured by `cargo xtask leverage`.
 
 use anyhow::Context as _;
 use serde::{Deserialize, Serialize};
@@ -8,43 +8,43 @@ use crate::Setting;
 use crate::measure::Measure;
 use crate::verdict::Verdict;
 
-/// The committed one.
+/// The committed file.
 const COMMITTED: &str = include_str!("../../../../docs/records/leverage.json");
 
-/// What was measured, for every setting.
+/// Measured changes of verdicts, for every setting.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Leverage {
     /// Seed of the data sets.
     pub seed: u64,
-    /// How many there were of each row.
+    /// Number of data sets of each row.
     pub data_sets: u32,
-    /// Setting by setting, in the order of [`settings`](crate::settings).
+    /// One entry per setting, in the order of [`settings`](crate::settings).
     pub settings: Vec<Changed>,
 }
 
-/// What comes of it when one setting is changed.
+/// Effect of changing one setting.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Changed {
     /// The experiment's id.
     pub experiment: String,
     /// The setting's name.
     pub setting: String,
-    /// Where it is a fifth smaller.
+    /// Cells with another verdict if the setting is a fifth smaller.
     pub smaller: Vec<Turned>,
-    /// Where it is a fifth larger.
+    /// Cells with another verdict if the setting is a fifth larger.
     pub larger: Vec<Turned>,
 }
 
-/// A cell that gets another verdict.
+/// A cell with another verdict.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Turned {
-    /// Its row.
+    /// The id of its row.
     pub row: String,
     /// Its measure.
     pub measure: Measure,
-    /// The verdict at the value that is used.
+    /// The verdict at the value in use.
     pub was: Verdict,
-    /// The verdict at the other value.
+    /// The verdict at the changed value.
     pub is: Verdict,
 }
 
@@ -61,15 +61,15 @@ impl Turned {
 }
 
 impl Leverage {
-    /// What texts and pages show.
+    /// The committed measurements, which texts and pages show.
     ///
     /// # Errors
-    /// If it is damaged.
+    /// If the file is damaged.
     pub fn committed() -> anyhow::Result<Leverage> {
         serde_json::from_str(COMMITTED).context("docs/records/leverage.json is damaged")
     }
 
-    /// As the committed one is written.
+    /// Formats the measurements like the committed file.
     ///
     /// # Errors
     /// Never; serialising these types cannot fail.
@@ -77,7 +77,7 @@ impl Leverage {
         Ok(serde_json::to_string_pretty(self)? + "\n")
     }
 
-    /// What was measured of a setting.
+    /// The effect of changing a setting.
     pub fn of(&self, setting: &Setting) -> Option<&Changed> {
         let is_meant = |changed: &&Changed| changed.experiment == setting.experiment && changed.setting == setting.name;
         self.settings.iter().find(is_meant)
@@ -89,7 +89,7 @@ mod tests {
     use super::*;
     use crate::{registry, settings};
 
-    /// A setting that was renamed or added has to be measured; cells are those that are printed.
+    /// The committed file covers every setting, including new and renamed ones, and names only printed cells.
     #[test]
     fn every_setting_was_measured() {
         let committed = Leverage::committed().unwrap();

@@ -1,12 +1,12 @@
-//! The experiments of the paper: every table and figure of it that can be reproduced, one file each, with what the paper
-//! prints and what a run of them comes to.
+//! The experiments of the paper: every reproducible table and figure, one file each, with the printed numbers and the results of a
+//! run.
 //!
-//! - [`registry`]: all of them. An [`Experiment`] has [`Setup`]s, and each of these a [`Trial`], which makes a data set from a
-//!   generator of [`seed`], learns from it and scores what was learnt: an [`outcome::Outcome`].
-//! - [`summary`]: what outcomes come to, beside the printed figures; [`results`]: the form in which that is kept.
-//! - [`settings`]: what is fitted; [`leverage`]: how much hangs on it; [`variants`]: numbers that texts quote of other settings.
+//! - [`registry`]: all experiments. An [`Experiment`] has [`Setup`]s, and each of these a [`Trial`], which generates a data set from
+//!   a generator of [`seed`], learns from it and measures the errors: an [`outcome::Outcome`].
+//! - [`summary`]: summarises outcomes and compares them with the printed numbers; [`results`]: the file format of the results.
+//! - [`settings`]: fitted settings; [`leverage`]: their effect on verdicts; [`variants`]: numbers at other settings that texts quote.
 //!
-//! Whoever runs them decides on threads, files and progress.
+//! The caller chooses threads, files and progress displays.
 
 mod evaluation;
 pub mod leverage;
@@ -51,32 +51,32 @@ use evaluation::protocol::TESTED_ON;
 use crate::measure::{Measure, RowOf};
 use crate::paper::{EVERY_ROW, Explanations, PaperTable, Printed};
 
-/// A table or figure.
+/// A table or figure of the paper, or an additional one.
 #[derive(Default)]
 pub struct Experiment {
     /// Identifier on the command line and in the results.
     pub id: &'static str,
     /// Section of the paper.
     pub section: &'static str,
-    /// One line for people.
+    /// A one-line title.
     pub title: &'static str,
-    /// Repetitions of each setup in the paper.
+    /// Number of data sets of each setup in the paper.
     pub data_sets: u32,
-    /// What is fitted or left open by the paper, in a sentence or two.
+    /// Settings that are fitted or that the paper leaves open, in a sentence or two.
     pub remark: &'static str,
-    /// What its numbers do not show: statements of the paper that do not hold here, and other reservations, a sentence each.
+    /// Reservations that the numbers do not show, such as statements of the paper that do not hold here, a sentence each.
     pub reservations: &'static [&'static str],
-    /// The page of `docs/decisions` on why it is done so.
+    /// The page of `docs/decisions` with the reasons.
     pub decisions: &'static str,
-    /// The experiment of which it is another reading: its cells are no further figures of the paper.
+    /// The experiment of which it is another reading; its cells do not count as additional numbers of the paper.
     pub another_reading_of: Option<&'static str>,
-    /// What has to be said beside the table of learners.
+    /// A remark for the table of learners.
     pub comparisons_remark: Option<&'static str>,
-    /// Learners compared, a line for each error; empty where there is one learner alone.
+    /// Comparisons of learners, a line for each error; empty if there is only one learner.
     pub comparisons: Vec<Comparison>,
-    /// What is measured, in the table's order.
+    /// The measured setups, in the table's order.
     pub setups: Vec<Setup>,
-    /// The printed figures: `crates/paper/experiments/paper/*.toml`; empty where the paper shows curves only.
+    /// The printed numbers: `crates/paper/experiments/paper/*.toml`; empty if the paper shows only curves.
     pub paper: PaperTable,
     /// Why single cells stand out: `crates/paper/experiments/paper/*-explained.toml`.
     pub explanations: Explanations,
@@ -88,12 +88,12 @@ impl Experiment {
         self.setups.iter().flat_map(|setup| &setup.rows)
     }
 
-    /// The printed figure of a cell.
+    /// The printed number of a cell.
     pub fn paper(&self, row: &str, measure: Measure) -> Option<Printed> {
         self.paper.get(row)?.get(&measure).copied()
     }
 
-    /// Fails if the printed figures and the rows do not belong together, as after a slip in a name.
+    /// Fails if the printed numbers and the rows do not match, for example after a misspelt name.
     fn checked(self) -> anyhow::Result<Self> {
         let of_paper = |row: &&Row| !self.paper.is_empty() && row.of != RowOf::Additional;
         for row in self.rows().filter(of_paper) {
@@ -118,41 +118,41 @@ impl Experiment {
         Ok(self)
     }
 
-    /// Why a cell stands out and what was tried, if that is known: of its row, or else of every row.
+    /// Why a cell stands out and what was tried, if known: the text for its row, or else the text for every row.
     pub fn explain(&self, row: &str, measure: Measure) -> Option<&str> {
         let of = |row: &str| self.explanations.texts.get(row)?.get(&measure);
         of(row).or_else(|| of(EVERY_ROW)).map(String::as_str)
     }
 }
 
-/// Independent data sets, each of which gives one value for every measure of every row.
+/// Independent data sets, each with one value for every measure of every row.
 pub struct Setup {
     /// Identifier, unique within the experiment.
     pub id: String,
-    /// The rows, in the order of what [`Trial::run`] returns.
+    /// The rows, in the order of the result of [`Trial::run`].
     pub rows: Vec<Row>,
-    /// The system whose random stream is used: equal numbers see equal data sets.
+    /// The system, which selects the random stream: setups with equal numbers use equal data sets.
     pub system: u32,
-    /// How many data sets it sees, where not as many as the experiment has: then the first ones.
+    /// Number of data sets, the first ones; `None` for as many as the experiment has.
     pub data_sets: Option<u32>,
-    /// Work of one data set, in any unit that all setups share; used for the time left.
+    /// Work of one data set, in any unit that all setups share; used to estimate the remaining time.
     pub cost: u64,
-    /// How a data set is made, learnt and scored.
+    /// Generates a data set, learns from it and measures the errors.
     pub trial: Box<dyn Trial>,
 }
 
 impl Setup {
-    /// A setup that sees as many data sets as its experiment.
+    /// A setup with as many data sets as its experiment.
     fn new(id: &str, system: u32, cost: u64, rows: Vec<Row>, trial: impl Trial + 'static) -> Setup {
         Setup { id: id.to_owned(), rows, system, data_sets: None, cost, trial: Box::new(trial) }
     }
 
-    /// How many data sets it sees in its experiment.
+    /// Number of its data sets in the experiment.
     pub fn data_sets_of(&self, experiment: &Experiment) -> u32 {
         self.data_sets.unwrap_or(experiment.data_sets)
     }
 
-    /// Whether its rows only hold learners against each other.
+    /// Whether its rows only compare learners with each other.
     pub fn is_of_comparisons(&self) -> bool {
         self.rows.iter().all(|row| row.of == RowOf::Additional)
     }
@@ -162,9 +162,9 @@ impl Setup {
 pub struct Row {
     /// Identifier, unique within the experiment.
     pub id: String,
-    /// Whose errors stand in it.
+    /// The kind of learner whose errors the row contains.
     pub of: RowOf,
-    /// Which samples its errors are of.
+    /// Description of the test samples.
     pub(crate) tested_on: &'static str,
 }
 
@@ -175,22 +175,22 @@ impl Row {
     }
 }
 
-/// What one data set gives: the measures of each row of its setup.
+/// Result of one data set: the measures of each row of its setup.
 pub type Measures = Vec<BTreeMap<Measure, f64>>;
 
-/// Everything that one data set of a setup needs.
+/// Everything that a setup does with one data set.
 pub trait Trial: Parameters + Send + Sync {
-    /// Makes a data set, learns from it and scores what was learnt, row by row.
+    /// Generates a data set, learns from it and measures the errors, row by row.
     ///
     /// # Errors
-    /// If it cannot be made, learnt or scored.
+    /// If a step fails.
     fn run(&self, rng: &mut ChaCha8Rng) -> anyhow::Result<Measures>;
 }
 
 /// All experiments, in the paper's order.
 ///
 /// # Errors
-/// If what the paper prints, or a file of a robot, does not fit them.
+/// If the printed numbers or a robot's file do not match the experiments.
 pub fn registry() -> anyhow::Result<Vec<Experiment>> {
     let experiments = [
         tables::table1::table1()?,

@@ -1,8 +1,8 @@
-//! The figures that experiments report, and how each is judged.
+//! The measures that experiments report, and the rule by which each is judged.
 
 use serde::{Deserialize, Serialize};
 
-/// A figure of the paper, in the order of its tables.
+/// A measure, in the order of the paper's tables.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Measure {
@@ -12,7 +12,7 @@ pub enum Measure {
     Nupe,
     /// Error of the policy under the training constraints (A2).
     Ncpe,
-    /// Error of the policy under a constraint that no demonstration shows (A2).
+    /// Error of the policy under a constraint that no demonstration contains (A2).
     NcpeUnseen,
     /// Discarded trajectories, percent.
     Disc,
@@ -26,7 +26,7 @@ pub enum Measure {
     NupeAll,
     /// [`Measure::Ncpe`] on held-out samples of all movements.
     NcpeAll,
-    /// [`Measure::Nupe`] on movements from new starts, which nobody learnt from.
+    /// [`Measure::Nupe`] on test movements from new starts, which no learner sees.
     NupeFresh,
     /// [`Measure::NcpeUnseen`] on held-out samples of all movements.
     NcpeUnseenAll,
@@ -34,17 +34,17 @@ pub enum Measure {
     NaiveAll,
     /// [`Measure::PolicyAlign`] on held-out samples of all movements.
     PolicyAlignAll,
-    /// Test samples outside every receptive field, percent; they count with the mean.
+    /// Test samples outside every receptive field, percent. Their prediction is the mean.
     Unsupported,
     /// Demonstrated movements that leave the robot's joint limits somewhere, percent.
     BeyondLimits,
-    /// What a learner expects [`Measure::Nupe`] to be.
+    /// A learner's own estimate of [`Measure::Nupe`].
     ExpectedNupe,
     /// Data sets in which the slope GP finds rotation, percent.
     Rotation,
     /// Data sets that are read as free movement, percent.
     ReadFree,
-    /// Data sets that are read as constrained by constraints that vary, percent.
+    /// Data sets that are read as movements under varying constraints, percent.
     ReadConstrained,
     /// Data sets that two readings explain, percent.
     ReadAmbiguous,
@@ -52,27 +52,27 @@ pub enum Measure {
     ReadUnexplained,
 }
 
-/// By which rule ours and the paper's figure are compared.
+/// The rule by which our number is compared with the paper's.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Kind {
-    /// An error that is left to the learner.
+    /// An error that depends on the learner.
     LearnerError,
-    /// An error of the baseline: it is to be as large as the paper's.
+    /// An error of the baseline, which should be as large as the paper's.
     BaselineError,
-    /// An error that the set-up decides, not the learner: that of alignment follows from the time step.
+    /// An error that depends on the set-up and not on the learner: that of alignment follows from the time step.
     SetUpError,
     /// A share of trajectories.
     Share,
 }
 
-/// Whose errors stand in a row.
+/// The kind of learner whose errors a row contains.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RowOf {
-    /// A learner that is to be as good as it can.
+    /// A learner whose errors should be as small as possible.
     Learner,
     /// The baseline.
     Baseline,
-    /// A learner that the paper does not have: it stands in comparisons only.
+    /// A learner that is not in the paper; it appears only in comparisons.
     Additional,
 }
 
@@ -82,7 +82,7 @@ impl Measure {
         self.names().0
     }
 
-    /// The measure's name for readers; of a share it ends with "%".
+    /// The measure's name for readers; the name of a share ends with "%".
     pub fn label(self) -> &'static str {
         self.names().1
     }
@@ -114,12 +114,12 @@ impl Measure {
         }
     }
 
-    /// Whether it is in percent.
+    /// Whether it is a percentage.
     fn is_share(self) -> bool {
         self.label().ends_with('%')
     }
 
-    /// How it is judged in a row.
+    /// The rule for this measure in a row.
     pub(crate) fn kind(self, row: RowOf) -> Kind {
         match (self, row) {
             _ if self.is_share() => Kind::Share,
@@ -129,28 +129,28 @@ impl Measure {
         }
     }
 
-    /// A figure of the paper: with the digits that it was printed with, as far as they say something.
+    /// A number of the paper, with its printed digits as far as they are significant.
     pub fn show_printed(self, value: f64) -> String {
         let shown = format!("{value:.4}");
         if self.is_share() || shown.parse() != Ok(value) { self.show(value) } else { shown }
     }
 
-    /// A value as tables print it.
+    /// A value as tables show it.
     pub fn show(self, value: f64) -> String {
         self.show_like(value, value)
     }
 
-    /// A standard deviation with the decimals of its mean, as far as something is left of it.
+    /// A standard deviation with the decimals of its mean; if that rounds it to zero, with its own.
     pub fn show_sd(self, sd: f64, mean: f64) -> String {
         let shown = self.show_like(sd, mean);
         if sd != 0.0 && shown.parse() == Ok(0.0) && !self.is_share() { self.show(sd) } else { shown }
     }
 
-    /// A value with the decimals that suit another one.
+    /// A value with the decimals that suit `other`.
     fn show_like(self, value: f64, other: f64) -> String {
         match self {
             _ if self.is_share() => format!("{value:.2}"),
-            // What is exact but for rounding.
+            // Exact except for rounding errors.
             _ if other != 0.0 && other.abs() < 1e-5 => format!("{value:.0e}"),
             // Table 2 has errors below a thousandth.
             _ if other.abs() < 1e-3 => format!("{value:.6}"),

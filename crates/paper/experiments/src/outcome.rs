@@ -1,4 +1,4 @@
-//! What one data set of one setup gave.
+//! The outcome of one data set of one setup.
 
 use std::collections::BTreeMap;
 
@@ -8,18 +8,18 @@ use serde::{Deserialize, Serialize};
 use crate::Measures;
 use crate::measure::Measure;
 
-/// What one data set of one setup gave.
+/// The outcome of one data set of one setup.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Outcome {
     /// The measures of each row.
     Measured(Measures),
-    /// Why there are none.
+    /// The reason why there are no measures.
     Failed(String),
 }
 
 impl Outcome {
-    /// What a trial gave that was to measure `n_rows` rows. A value that is not a number is a failure of the data set.
+    /// The outcome of a trial with `n_rows` rows. A value that is not finite counts as a failure of the data set.
     pub fn of(measured: anyhow::Result<Measures>, n_rows: usize) -> Outcome {
         match measured.and_then(|rows| checked(rows, n_rows)) {
             Ok(rows) => Outcome::Measured(rows),
@@ -27,7 +27,7 @@ impl Outcome {
         }
     }
 
-    /// Whether it can be the outcome of a setup with so many rows.
+    /// Whether it can be the outcome of a setup with this number of rows.
     pub fn is_of_rows(&self, n_rows: usize) -> bool {
         match self {
             Outcome::Measured(rows) => rows.len() == n_rows,
@@ -35,7 +35,7 @@ impl Outcome {
         }
     }
 
-    /// The measures of the row that stands at `at` in its setup, where there are any.
+    /// The measures of the row with index `at` in its setup, if any.
     pub(crate) fn row(&self, at: usize) -> Option<&BTreeMap<Measure, f64>> {
         match self {
             Outcome::Measured(rows) => rows.get(at),

@@ -1,4 +1,4 @@
-//! The paper's printed figures, as data.
+//! The paper's printed numbers, as data.
 
 use std::collections::BTreeMap;
 
@@ -17,7 +17,7 @@ pub struct Printed {
     pub sd: f64,
 }
 
-/// Printed figures by row and measure.
+/// Printed numbers by row and measure.
 pub type PaperTable = BTreeMap<String, BTreeMap<Measure, Printed>>;
 
 /// Reads one of the files in `crates/paper/experiments/paper`.
@@ -25,19 +25,19 @@ pub(crate) fn paper_table(text: &str) -> anyhow::Result<PaperTable> {
     toml::from_str(text).context("the paper's figures (crates/paper/experiments/paper/*.toml) cannot be read")
 }
 
-/// The row of [`Explanations`] whose texts are about every row that has none.
+/// The row of [`Explanations`] that applies to all rows without a text.
 pub(crate) const EVERY_ROW: &str = "every-row";
 
-/// Why single cells stand out.
+/// Explanations of single cells that stand out.
 #[derive(Debug, Default)]
 pub struct Explanations {
     /// Sentences, by row and measure.
     pub texts: BTreeMap<String, BTreeMap<Measure, String>>,
-    /// What they quote, each with its cell.
+    /// The quotes in the texts, each with its cell.
     pub quotes: Vec<(Quote, Cell)>,
 }
 
-/// Reads why single cells of an experiment stand out, from one of the files in `crates/paper/experiments/paper`.
+/// Reads an experiment's explanations from one of the files in `crates/paper/experiments/paper`.
 pub(crate) fn explanations(experiment: &str, text: &str) -> anyhow::Result<Explanations> {
     let read = || {
         let mut explanations = Explanations { texts: toml::from_str(text)?, quotes: Vec::new() };

@@ -1,12 +1,13 @@
-//! What a trial is, as data: it is part of the records' keys. Names that changed in code keep their old form there
-//! (`serde(rename)`), since another one would orphan all records.
+//! The parameters of a trial as data, which are part of the records' keys. Names that changed in the code keep their old
+//! form there (`serde(rename)`), because a new form would orphan all records.
 
 use serde::Serialize;
 use serde_json::Value;
 
-/// Parameters that can be written down. Robots are left out: their files are part of the program, which the keys hold too.
+/// Parameters that can be serialised. Robots are omitted: their files are part of the program, which the keys also
+/// identify.
 pub trait Parameters {
-    /// All of them, by name.
+    /// All parameters, by name.
     ///
     /// # Errors
     /// If they cannot be written as JSON.
@@ -26,7 +27,7 @@ impl<T: Serialize> Parameters for T {
 mod tests {
     use crate::registry;
 
-    /// Setups that see the same data sets differ in something else, or records of one would be taken for another's.
+    /// Setups with the same data sets differ in another parameter; otherwise their records could be confused.
     #[test]
     fn no_two_setups_of_an_experiment_have_the_same_parameters() {
         for experiment in registry().unwrap() {

@@ -11,32 +11,32 @@ use crate::measure::Measure;
 use crate::paper::Printed;
 use crate::verdict::Verdict;
 
-/// Version of the form of `results.json`.
+/// Version of the format of `results.json`.
 pub const SCHEMA: u32 = 3;
 
-/// The oldest form that is still read: it does not say what ran.
+/// The oldest format that can still be read; it does not identify the program.
 const OLDEST_SCHEMA: u32 = 2;
 
-/// The whole file. All but `run` is the same to the bit for the same seed and program.
+/// The whole file. Everything except `run` is identical to the bit for the same seed and program.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Results {
-    /// Version of this form.
+    /// Version of this format.
     pub schema: u32,
     /// Seed of all random numbers.
     pub seed: u64,
-    /// Whether only few data sets a row were asked for.
+    /// Whether the run was restricted to a few data sets per row.
     pub quick: bool,
-    /// What differs between two runs of the same thing.
+    /// Properties that differ between repetitions of the same run.
     pub run: Run,
     /// Tables and figures.
     pub experiments: Vec<ExperimentResult>,
 }
 
 impl Results {
-    /// Reads the text of a `results.json`, which has this name for people.
+    /// Reads the text of a `results.json`; error messages call it `name`.
     ///
     /// # Errors
-    /// What is damaged, or of a form that is not read.
+    /// If it is damaged or has an unsupported format.
     pub fn read(name: &str, text: &str) -> anyhow::Result<Results> {
         let value: Value = serde_json::from_str(text).map_err(|error| anyhow!("{name} is damaged ({error})"))?;
         let schema = value["schema"].as_u64().with_context(|| format!("{name} is not a results.json"))?;
@@ -51,7 +51,7 @@ impl Results {
         Ok(results)
     }
 
-    /// What is shown to people as it stands.
+    /// Texts that are shown to readers unchanged.
     fn texts(&self) -> Vec<&str> {
         let mut texts = vec![self.run.command.as_str()];
         for result in &self.experiments {
@@ -66,7 +66,7 @@ impl Results {
         self.experiments.iter().find(|result| result.id == id)
     }
 
-    /// The experiments that were run, each with its results.
+    /// The experiments of the run, each with its results.
     pub fn of<'a>(
         &'a self,
         experiments: &'a [Experiment],
@@ -74,10 +74,10 @@ impl Results {
         experiments.iter().filter_map(|experiment| Some((experiment, self.experiment(experiment.id)?)))
     }
 
-    /// Fails where there are results of other experiments than these.
+    /// Fails if there are results of other experiments than these.
     ///
     /// # Errors
-    /// Says of which.
+    /// Names the unknown experiment.
     pub fn check_known(&self, experiments: &[Experiment]) -> anyhow::Result<()> {
         let known = |id: &str| experiments.iter().any(|experiment| experiment.id == id);
         match self.experiments.iter().find(|result| !known(&result.id)) {
@@ -86,7 +86,7 @@ impl Results {
         }
     }
 
-    /// As written to `results.json`.
+    /// Formats the results for `results.json`.
     ///
     /// # Errors
     /// If a number is not finite.
@@ -95,12 +95,12 @@ impl Results {
     }
 }
 
-/// Whether a text means nothing to a shell, to Markdown or to a terminal.
+/// Whether a text has no special meaning in a shell, in Markdown or in a terminal.
 fn is_plain(text: &str) -> bool {
     text.chars().all(|c| c.is_ascii_alphanumeric() || " ._,/-".contains(c))
 }
 
-/// Hundreds of numbers in a row are for machines.
+/// Writes hundreds of numbers on one line, because only programs read them.
 fn on_one_line<S: Serializer>(values: &Vec<Option<f64>>, serializer: S) -> Result<S::Ok, S::Error> {
     serde_json::value::to_raw_value(values).map_err(S::Error::custom)?.serialize(serializer)
 }
@@ -108,11 +108,11 @@ fn on_one_line<S: Serializer>(values: &Vec<Option<f64>>, serializer: S) -> Resul
 /// Circumstances of the run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Run {
-    /// The command that gives the same again.
+    /// The command that repeats the run.
     pub command: String,
     /// Worker threads.
     pub threads: usize,
-    /// Data sets that earlier calls of the command had finished; the times are without them.
+    /// Number of data sets from earlier calls of the command; the times do not include them.
     pub resumed: usize,
     /// Elapsed seconds.
     pub wall_seconds: f64,
@@ -120,13 +120,13 @@ pub struct Run {
     pub cpu_seconds: f64,
     /// Version of the program.
     pub version: String,
-    /// The commit it was built from, with `-dirty` where files were changed; none outside of a checkout.
+    /// The commit it was built from, with `-dirty` if files were changed; `None` outside a checkout.
     #[serde(default)]
     pub revision: Option<String>,
-    /// The compiler that built it.
+    /// The compiler.
     #[serde(default)]
     pub rustc: String,
-    /// What it was built for.
+    /// The compilation target.
     #[serde(default)]
     pub target: String,
 }
@@ -154,18 +154,18 @@ pub struct ExperimentResult {
 pub struct RowResult {
     /// Identifier.
     pub id: String,
-    /// Which samples the errors are of.
+    /// Description of the test samples.
     #[serde(default)]
     pub tested_on: String,
-    /// Data sets asked for.
+    /// Number of data sets requested.
     pub data_sets: usize,
-    /// Data sets that could not be measured; they are counted here and left out of the measures.
+    /// Number of data sets that failed; the measures do not include them.
     pub failed: usize,
-    /// Summaries over the other data sets, as far as they have values.
+    /// Summaries over the other data sets, for the measures that have values.
     pub measures: BTreeMap<Measure, Cell>,
 }
 
-/// One figure: ours, the paper's, and how they compare.
+/// One number: ours, the paper's, and their comparison.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Cell {
     /// Mean over data sets.
@@ -174,17 +174,17 @@ pub struct Cell {
     pub sd: Option<f64>,
     /// Median over data sets.
     pub median: f64,
-    /// The value of each data set, in their order; null where it could not be measured or has no value.
+    /// The value of each data set, in order; null if it failed or has no value.
     #[serde(serialize_with = "on_one_line")]
     pub values: Vec<Option<f64>>,
-    /// The printed figure, where there is one.
+    /// The printed number, if there is one.
     pub paper: Option<Printed>,
-    /// The comparison, where there is one.
+    /// The comparison, if there is a printed number.
     pub verdict: Option<Verdict>,
 }
 
 impl Cell {
-    /// How many data sets gave a value.
+    /// Number of data sets with a value.
     pub fn n(&self) -> usize {
         self.values.iter().flatten().count()
     }
@@ -194,7 +194,7 @@ impl Cell {
 mod tests {
     use super::*;
 
-    /// Names from a file go into Markdown, a page and the hint of a command.
+    /// Names from a file are inserted into Markdown, a page and the hint of a command.
     #[test]
     fn hostile_names_are_damage() {
         let file = |row: &str| {

@@ -14,7 +14,7 @@ pub fn upper_body() -> anyhow::Result<UpperBody> {
     UpperBody::new(urdf, srdf).context("robots/asimo_upper_body cannot be used")
 }
 
-/// The arm of seven joints that wipes.
+/// The arm with seven joints for wiping.
 pub(crate) fn seven_joint_arm(contact: Contact) -> anyhow::Result<Wiping> {
     let urdf = include_str!("../../../../robots/seven_joint_arm.urdf");
     Wiping::new(urdf, contact).context("robots/seven_joint_arm.urdf cannot be used")

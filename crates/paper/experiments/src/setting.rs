@@ -1,15 +1,15 @@
-//! What can be set otherwise: a setting with where it comes from and the experiment that it makes at another value.
+//! A setting of an experiment: the origin of its value, and the experiment with another value.
 
 use crate::Setup;
 
-/// Where a setting's value comes from.
+/// Origin of a setting's value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Class {
     /// The paper gives it, in words, equations or the axes of a figure.
     Paper,
     /// The default of the LWPR library that the paper's authors wrote.
     LibraryDefault,
-    /// It was chosen so that the printed figures come out.
+    /// It was chosen to reproduce the printed numbers.
     Fitted,
 }
 
@@ -31,15 +31,15 @@ type With = Box<dyn Fn(f64) -> anyhow::Result<Vec<Setup>>>;
 pub struct Setting {
     /// The experiment's id.
     pub experiment: &'static str,
-    /// Its name, with a unit; the same name in two experiments is the same number.
+    /// Its name, with a unit. The same name in two experiments denotes the same number.
     pub name: &'static str,
-    /// Where its value comes from.
+    /// Origin of its value.
     pub class: Class,
-    /// What the paper says of it.
+    /// The paper's statement about it.
     pub paper: &'static str,
-    /// What is used here.
+    /// The value in use.
     pub used: f64,
-    /// The printed rows at another value; whole numbers are rounded.
+    /// The printed rows with another value; integers are rounded.
     pub with: With,
 }
 
@@ -55,13 +55,13 @@ impl Setting {
         Setting { experiment, name, class, paper, used, with: Box::new(with) }
     }
 
-    /// Its value in use, as short as it was written.
+    /// The value in use, formatted as in the source.
     pub fn shown(&self) -> String {
         shown(self.used)
     }
 }
 
-/// A setting's value, as short as it was written.
+/// A setting's value, formatted as in the source.
 pub fn shown(value: f64) -> String {
     let rounded = format!("{value:.6}");
     if value.abs() < 1e-3 {
@@ -74,7 +74,7 @@ pub fn shown(value: f64) -> String {
 /// The time step that the robots share.
 pub(super) const TIME_STEP: &str = "δt of the robots, s";
 
-/// Where the paper is silent.
+/// The text for settings that the paper does not mention.
 pub(super) const SILENT: &str = "nothing";
 
 #[cfg(test)]

@@ -5,13 +5,13 @@ use std::collections::BTreeSet;
 use crate::setting::{Class, Setting};
 use crate::tables::{asimo22, table1, table2, three_link};
 
-/// How many numbers are fitted: one that several experiments share counts once.
+/// Number of fitted values; one that several experiments share counts once.
 pub fn n_fitted() -> usize {
     let of = |setting: Setting| (setting.class == Class::Fitted).then(|| (setting.name, setting.shown()));
     settings().into_iter().filter_map(of).collect::<BTreeSet<_>>().len()
 }
 
-/// All of them, experiment by experiment.
+/// All settings, by experiment.
 pub fn settings() -> Vec<Setting> {
     [table1::settings(), table2::settings(), asimo22::settings(), three_link::settings()]
         .into_iter()
@@ -19,7 +19,7 @@ pub fn settings() -> Vec<Setting> {
         .collect()
 }
 
-/// These, and others that texts ask about.
+/// All settings, and others that texts quote.
 pub fn quotable() -> impl Iterator<Item = Setting> {
     settings().into_iter().chain(table1::asked_about())
 }
@@ -32,7 +32,8 @@ mod tests {
     use super::*;
     use crate::evaluation::recipe::Recipe;
 
-    /// One regression for all: what is called a library default is one, and the potential is not divided.
+    /// All experiments use the same regression: settings called library defaults have these values, and potentials are
+    /// not divided.
     #[test]
     fn the_regression_is_the_librarys() {
         let LwprRegressor { params, .. } = Recipe::default().regressor(2, 1.0);
@@ -50,7 +51,7 @@ mod tests {
         }
     }
 
-    /// A number that experiments share has one value.
+    /// Experiments that share a setting use the same value.
     #[test]
     fn fitted_numbers_are_counted_once() {
         let fitted: Vec<Setting> = settings().into_iter().filter(|setting| setting.class == Class::Fitted).collect();

@@ -1,4 +1,4 @@
-//! What the outcomes of many data sets come to: a cell of a table for every measure of every row.
+//! Summaries of the outcomes of many data sets: a cell of a table for every measure of every row.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -11,7 +11,7 @@ use crate::results::{Cell, ExperimentResult, Results, RowResult};
 use crate::verdict::verdict;
 use crate::{Experiment, Row};
 
-/// Sums up the outcomes of every setup, which stand in the order of `experiments`.
+/// Summarises the outcomes of every setup, in the order of `experiments`.
 ///
 /// # Errors
 /// If no data set of a row has a value.
@@ -28,10 +28,10 @@ pub fn summarise(experiments: &[Experiment], outcomes: &[Vec<Outcomes>]) -> anyh
     experiments.iter().zip(outcomes).map(experiment).collect()
 }
 
-/// Fails unless every cell is what its values come to, beside the figures that the paper prints.
+/// Checks that every cell is the summary of its values, compared with the printed numbers.
 ///
 /// # Errors
-/// Says which is not.
+/// Names the cell that is not.
 pub fn check(experiments: &[Experiment], results: &Results) -> anyhow::Result<()> {
     results.check_known(experiments)?;
     for experiment in experiments {
@@ -54,7 +54,7 @@ fn check_row(experiment: &Experiment, found: &RowResult) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Sums up the row that stands at `at` in its setup.
+/// Summarises the row with index `at` in its setup.
 fn summarise_row(experiment: &Experiment, row: &Row, at: usize, outcomes: &Outcomes) -> anyhow::Result<RowResult> {
     let rows: Vec<Option<&BTreeMap<Measure, f64>>> = outcomes.iter().map(|outcome| outcome.row(at)).collect();
     let failed = rows.iter().filter(|row| row.is_none()).count();

@@ -1,4 +1,4 @@
-//! Numbers that texts quote of settings that are not used: what a cell reads if one setting has another value.
+//! Results at settings that are not in use, which texts quote: the value of a cell if one setting has another value.
 //!
 //! `{passes of the regression = 1}` in `paper/*-explained.toml` stands for the explained cell's mean over the first
 //! data sets of a seed; `{passes of the regression = 1: row measure}` for that of another cell. `cargo xtask leverage`
@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::measure::Measure;
 
-/// The committed ones.
+/// The committed file.
 const COMMITTED: &str = include_str!("../../../../docs/records/variants.json");
 
 /// Row and measure.
@@ -21,18 +21,18 @@ pub type Cell = (String, Measure);
 /// The values of cells over the data sets, by row and measure.
 type Cells = BTreeMap<String, BTreeMap<Measure, Vec<f64>>>;
 
-/// A cell of an experiment at another value of a setting.
+/// A quote of a cell with another value of a setting.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Quote {
     /// The setting's name.
     pub setting: String,
     /// Its value.
     pub value: f64,
-    /// Both, as they are written.
+    /// Both, as written in the text.
     variant: String,
 }
 
-/// What was measured.
+/// The measured values.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Variants {
     /// Seed of the data sets.
@@ -42,20 +42,20 @@ pub struct Variants {
 }
 
 impl Variants {
-    /// None yet.
+    /// Without any values.
     pub fn from_seed(seed: u64) -> Variants {
         Variants { seed, cells: BTreeMap::new() }
     }
 
-    /// Those that texts quote.
+    /// The committed values, which texts quote.
     ///
     /// # Errors
-    /// If they are damaged.
+    /// If the file is damaged.
     pub fn committed() -> anyhow::Result<Variants> {
         serde_json::from_str(COMMITTED).context("docs/records/variants.json is damaged")
     }
 
-    /// As the committed ones are written.
+    /// Formats the values like the committed file.
     ///
     /// # Errors
     /// If a number is not finite.
@@ -76,10 +76,10 @@ impl Variants {
         Some(Summary::of(values).ok()?.mean)
     }
 
-    /// A text on a cell with numbers for what it quotes; what was not measured stays in braces.
+    /// Replaces the quotes in a text about a cell by numbers; quotes without measurements remain in braces.
     ///
     /// # Errors
-    /// If it quotes what is no setting and value, or no cell.
+    /// If a quote does not consist of a known setting and value, or of a known cell.
     pub fn filled(&self, experiment: &str, own: &Cell, text: &str) -> anyhow::Result<String> {
         let mut filled = String::new();
         for part in parts(text, own)? {
@@ -95,13 +95,13 @@ impl Variants {
     }
 }
 
-/// Two digits that count, as texts have them: 0.0028, 0.43, 8.4.
+/// Rounds to two significant digits, as in texts: 0.0028, 0.43, 8.4.
 pub fn two_digits(value: f64) -> String {
     let decimals = (1.0 - value.log10().floor()).max(0.0) as usize;
     format!("{value:.decimals$}")
 }
 
-/// What a text on a cell quotes, each with its own cell.
+/// The quotes in a text about a cell, each with its cell.
 ///
 /// # Errors
 /// As [`Variants::filled`].
@@ -115,7 +115,7 @@ pub fn quotes(own: &Cell, text: &str) -> anyhow::Result<Vec<(Quote, Cell)>> {
 
 enum Part<'t> {
     Words(&'t str),
-    /// As it is written, and as it is meant.
+    /// As written, and as parsed.
     Quote(&'t str, Quote, Cell),
 }
 
@@ -132,7 +132,7 @@ fn parts<'t>(text: &'t str, own: &Cell) -> anyhow::Result<Vec<Part<'t>>> {
     Ok(parts)
 }
 
-/// `setting = value` of a text's own cell, or `setting = value: row measure`.
+/// Parses `setting = value`, for the text's own cell, or `setting = value: row measure`.
 fn quote(written: &str, own: &Cell) -> anyhow::Result<(Quote, Cell)> {
     let (variant, cell) = written.split_once(": ").map_or((written, None), |(variant, cell)| (variant, Some(cell)));
     let (setting, value) = variant.rsplit_once(" = ").with_context(|| format!("not setting = value: {written}"))?;
@@ -193,7 +193,7 @@ mod tests {
         }
     }
 
-    /// What the program computes today is what was committed, on the first data set of quick variants.
+    /// The program reproduces the committed values, on the first data set of variants that are quick to compute.
     #[test]
     fn committed_variants_are_what_the_program_computes() {
         let variants = Variants::committed().unwrap();

@@ -1,30 +1,30 @@
-//! The rule that compares our figures with the paper's.
+//! The rule that compares our numbers with the paper's.
 
 use serde::{Deserialize, Serialize};
 
 use crate::measure::Kind;
 use crate::paper::Printed;
 
-/// How our mean compares with the printed one.
+/// Result of comparing our mean with the printed one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
     /// Within the band around the printed mean.
     Agrees,
-    /// An error of the learner below the band.
+    /// Below the band: a smaller error of the learner.
     #[serde(alias = "better")]
     Lower,
-    /// An error of the learner above the band.
+    /// Above the band: a larger error of the learner.
     #[serde(alias = "worse")]
     Higher,
-    /// Outside the band, where neither direction is to be preferred.
+    /// Outside the band, for measures where neither direction is better.
     Differs,
 }
 
-/// A printed share of 0 ± 0 agrees with anything that would be printed so: below 0.005 percent.
+/// A printed share of 0 ± 0 agrees with any share that would be printed as 0: below 0.005 percent.
 const PRINTED_ZERO: f64 = 0.005;
 
-/// Judges our mean: it agrees within one printed s.d. Only an error that is left to the learner can be lower or higher.
+/// Judges our mean: it agrees within one printed s.d. Only an error that depends on the learner can be lower or higher.
 pub(crate) fn verdict(kind: Kind, ours: f64, paper: Printed) -> Verdict {
     let difference = ours - paper.mean;
     let band = match kind {
@@ -45,12 +45,12 @@ impl Verdict {
         self.words()[0]
     }
 
-    /// The words after one cell.
+    /// The words that follow a count of one.
     pub fn singular(self) -> &'static str {
         self.words()[1]
     }
 
-    /// The words after a number of cells.
+    /// The words that follow a larger count.
     pub fn plural(self) -> &'static str {
         self.words()[2]
     }
@@ -64,7 +64,7 @@ impl Verdict {
         }
     }
 
-    /// Whether the figure is at least as low as the paper's.
+    /// Whether the verdict is "agrees" or "lower".
     pub fn reached(self) -> bool {
         matches!(self, Verdict::Agrees | Verdict::Lower)
     }

@@ -1,4 +1,5 @@
-//! Tests: captions are true of every run, and what is said beside the paper's figures is what the committed records show.
+//! Tests: captions are true of every run, and the texts that compare figures with the paper's match the committed
+//! records.
 
 use std::fs;
 use std::path::Path;
@@ -9,7 +10,7 @@ use experiments::variants::two_digits;
 
 use crate::{Figure, Sources, figures};
 
-/// The full run that the texts speak of.
+/// The full run to which the texts refer.
 pub(super) fn records() -> Sources {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../docs/records/seed-1");
     let results = Results::read("results.json", &fs::read_to_string(folder.join("results.json")).unwrap()).unwrap();
@@ -20,7 +21,7 @@ pub(super) fn records() -> Sources {
     Sources::of(results, document).unwrap()
 }
 
-/// What stands beside a figure.
+/// The text that compares a figure with the paper's.
 pub(super) fn text(id: &str) -> &'static str {
     figures().into_iter().find(|figure| figure.id == id).and_then(|figure| figure.beside_paper).unwrap()
 }
@@ -37,7 +38,7 @@ fn assert_says(id: &str, words: &str) {
 
 const ERRORS: [(&str, Measure); 3] = [("π", Nupe), ("Nπ", Ncpe), ("φ", PotentialNmse)];
 
-/// "π from 0.18 to 0.43", between two rows.
+/// Checks for a text such as "π from 0.18 to 0.43", with the errors of two rows.
 fn assert_says_from_to(sources: &Sources, id: &str, [from, to]: [&str; 2], errors: &[(&str, Measure)]) {
     for (name, measure) in errors {
         let [from, to] = [from, to].map(|row| two_digits(cell(sources, id, row, *measure).mean));
@@ -101,7 +102,7 @@ fn figure_9_is_as_said() {
     assert_says_from_to(&sources, id, ["r-0.1", "r-1.0"], &[ERRORS[0], ERRORS[2]]);
 }
 
-/// What is said of a cell of a table.
+/// The explanation of a cell of a table.
 fn explained(experiment: &str, row: &str, measure: Measure) -> String {
     let all = experiments::registry().unwrap();
     let experiment = all.into_iter().find(|other| other.id == experiment).unwrap();
@@ -124,7 +125,7 @@ fn other_readings_of_tables_are_quoted_as_they_are() {
     }
 }
 
-/// Numbers of the paper that stand in what is said of cells are printed there.
+/// Numbers that explanations of cells call printed are printed in the paper.
 #[test]
 fn what_is_called_printed_is() {
     let number = |word: &str| {
@@ -152,7 +153,8 @@ fn what_is_called_printed_is() {
     assert!(found > 10, "{found}");
 }
 
-/// What plain Euler steps of the grasp's potential do, and how far its hands get in the paper's two seconds.
+/// Checks the statements about plain Euler steps of the grasp's potential, and about the way of the hands in the paper's
+/// two seconds.
 #[test]
 fn the_grasp_s_rates_are_as_said() {
     let grasp = experiments::grasp().unwrap();

@@ -1,4 +1,5 @@
-//! A case beyond the paper on the plane: what was shown, what each learner makes of it, and where the slope GP is sure.
+//! A case beyond the paper, in the plane: the demonstrations, the policy of each learner, and the uncertainty of the
+//! slope GP.
 
 use align::{Bandwidth, DirectPolicyLearning, Integration, LwprRegressor, PolicyAlign};
 use demo_gen::{Sinusoidal, demonstrations};
@@ -17,23 +18,23 @@ use crate::{Drawing, Sources, demonstrated, rounded};
 /// Starts of the movements are drawn from [−2, 2]².
 const EXTENT: f64 = 2.0;
 
-/// Arrows are drawn as long as this many seconds of movement.
+/// The length of an arrow corresponds to this many seconds of movement.
 const ARROW_SECONDS: f64 = 7.0;
 
-/// Longer actions are not meant.
+/// Longer actions are cut to this length.
 const LONGEST: f64 = 0.2;
 
-/// Half as many steps of a colour field across the plane.
+/// Half the number of steps of a colour field across the plane.
 const STEPS: i32 = 20;
 
-/// Errors below this are told as this.
+/// Smaller errors are shown as this value.
 const LEAST_ERROR: f64 = 1e-9;
 
-/// Pixels; with a scale of colours.
+/// Sizes in pixels, without and with a colour scale.
 const SIZE: (f64, f64) = (330.0, 350.0);
 const SIZE_WITH_SCALE: (f64, f64) = (430.0, 350.0);
 
-/// The first data set of ten movements, and what is learnt from it. Arrows are (x₁, x₂, u₁, u₂).
+/// The first data set of ten movements, and the policies learnt from it. Arrows are (x₁, x₂, u₁, u₂).
 #[derive(Serialize, Deserialize)]
 pub(crate) struct Fields {
     movements: Vec<Vec<(f64, f64)>>,
@@ -43,9 +44,9 @@ pub(crate) struct Fields {
     policy_align: Vec<Arrow>,
     direct_gp: Vec<Arrow>,
     slope_gp: Vec<Arrow>,
-    /// log₁₀ of the standard deviation that the slope GP gives its policy.
+    /// log₁₀ of the standard deviation that the slope GP estimates for its policy.
     expected: Field,
-    /// log₁₀ of how far its policy is from the truth.
+    /// log₁₀ of the distance between its policy and the truth.
     error: Field,
 }
 
@@ -128,7 +129,7 @@ pub(crate) fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
     Ok(Drawing { picture: Picture::rows(&[&[a, b, c, d], &[e, f, g]]), tables: vec![] })
 }
 
-/// From the least value of all fields to the largest: one scale of colours for all.
+/// Smallest and largest value of all fields, for a common colour scale.
 fn range_of<'f>(fields: impl IntoIterator<Item = &'f Field>) -> [f64; 2] {
     let values = fields.into_iter().flat_map(|field| field.values().iter().flatten());
     values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], &value| [low.min(value), high.max(value)])

@@ -1,14 +1,14 @@
-//! Demonstrations in the plane over lines of equal potential.
+//! Demonstrations in the plane, over contours of the potential.
 
 use plot::{Field, Layer};
 
 use crate::Who;
 
-/// Movements that alignment leaves out: a light blue.
+/// Colour of movements that alignment leaves out: a light blue.
 const LEFT_OUT: &str = "#8fc1e3";
 
-/// Contours below each movement's points and start, which is a dot somewhat wider than the `width` of its line, pixels.
-/// A movement that is not kept shows as light crosses.
+/// Contours, and above them each movement's points. The start is a dot somewhat wider than the line, which is `width`
+/// pixels wide. A movement that is not kept is drawn as light crosses.
 pub(super) fn layers<'m>(
     contours: &Field,
     movements: impl Iterator<Item = (&'m [(f64, f64)], bool)>,

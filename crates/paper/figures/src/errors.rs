@@ -1,4 +1,5 @@
-//! Curves of errors: mean and spread over data sets against what is varied, in the same colours and marks everywhere.
+//! Curves of errors: mean and spread over data sets against the varied quantity, with the same colours and marks in all
+//! figures.
 
 use experiments::measure::Measure;
 use experiments::results::{Cell, ExperimentResult};
@@ -6,7 +7,7 @@ use plot::{Axis, Curve, Dash, Filling, Mark, Sign, Stroke};
 
 use crate::Csv;
 
-/// The error of one thing that is learnt.
+/// An error measure with its name, colour and mark.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Error {
     measure: Measure,
@@ -25,14 +26,14 @@ impl Error {
     }
 }
 
-/// From the largest to the smallest in the paper.
+/// In descending order of the paper's errors.
 pub(super) const ERRORS: [Error; 3] = [
     Error { measure: Measure::Nupe, name: "π (nUPE)", color: "#d55e00", mark: Mark::Circle },
     Error { measure: Measure::Ncpe, name: "Nπ (nCPE)", color: "#0072b2", mark: Mark::Square },
     Error { measure: Measure::PotentialNmse, name: "φ (nMSE)", color: "#4d4d4d", mark: Mark::Up },
 ];
 
-/// What distinguishes the curves of one series from those of another.
+/// Line style and filling that distinguish the curves of one series from those of another.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Style {
     dash: Dash,
@@ -42,7 +43,7 @@ pub(super) struct Style {
 pub(super) const FIRST: Style = Style { dash: Dash::Solid, filling: Filling::Full };
 pub(super) const SECOND: Style = Style { dash: Dash::Dashed, filling: Filling::Hollow };
 
-/// The policy's error of learners beside PolicyAlign, and what their rows are called.
+/// The policy's error for learners other than PolicyAlign, with the names of their rows.
 pub(super) const BASELINES: [(Error, &str); 2] = [
     (Error { measure: Measure::Nupe, name: "π, slope GP", color: "#cc79a7", mark: Mark::Down }, "slope_gp"),
     (
@@ -51,23 +52,23 @@ pub(super) const BASELINES: [(Error, &str); 2] = [
     ),
 ];
 
-/// One line of rows of an experiment, and how it is drawn. Rows that were not run are left out.
+/// A series of rows of an experiment, and how it is drawn. Rows that were not run are left out.
 pub(super) struct Series<'a> {
     pub(super) result: &'a ExperimentResult,
-    /// What is varied, and the row.
+    /// The varied quantity, and the row.
     pub(super) rows: Vec<(f64, String)>,
-    /// After the names of its curves.
+    /// Suffix of the names of its curves.
     pub(super) of: &'static str,
     pub(super) style: Style,
 }
 
 impl Series<'_> {
-    /// The three errors.
+    /// The curves of the three errors.
     pub(super) fn curves(&self) -> impl Iterator<Item = Curve> {
         ERRORS.into_iter().map(|error| self.curve(error)).filter(|curve| !curve.points.is_empty())
     }
 
-    /// One error, with a point for each row that has it.
+    /// The curve of one error, with a point for each row that has a value.
     pub(super) fn curve(&self, error: Error) -> Curve {
         let point = |(x, row): &(f64, String)| {
             let Cell { mean, sd, .. } = self.cell(row, error.measure)?;
@@ -78,12 +79,12 @@ impl Series<'_> {
         Curve { points, stroke: error.stroke(self.style), sign: Some(error.sign(self.style)), name }
     }
 
-    /// Nothing where no data set has a value.
+    /// Returns `None` if no data set has a value.
     fn cell(&self, row: &str, measure: Measure) -> Option<&Cell> {
         self.result.rows.iter().find(|result| result.id == row)?.measures.get(&measure)
     }
 
-    /// What is varied, and each error's mean, s.d., median and number of data sets.
+    /// A table of the varied quantity, and each error's mean, s.d., median and number of data sets.
     pub(super) fn table(&self, name: &'static str, varied: &str) -> Csv {
         let columns = |error: Error| {
             let measure = error.measure.name();
@@ -102,7 +103,8 @@ impl Series<'_> {
     }
 }
 
-/// A logarithmic axis from a power of ten that goes on, broken, to the lowest point of these curves.
+/// A logarithmic axis that begins at `from`, a power of ten, and continues, broken, down to the lowest point of these
+/// curves.
 pub(super) fn axis_down_to<'c>(curves: impl IntoIterator<Item = &'c Curve>, from: f64) -> Axis {
     let means = curves.into_iter().flat_map(|curve| curve.points.iter().map(|point| point.1));
     Axis::Logarithmic { lowest: means.filter(|mean| *mean > 0.0).fold(from, f64::min) }

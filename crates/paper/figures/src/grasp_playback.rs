@@ -1,5 +1,6 @@
-//! Grasping as all joints carry it out, for figures 7 and 8 and the view in space: expert, naive learner and PolicyAlign
-//! from the same starts, under the constraint of the demonstrations, under one that they do not show, and under none.
+//! Grasping movements of all joints, for figures 7 and 8 and the 3-D view: expert, naive learner, PolicyAlign and slope
+//! GP from the same starts, under the constraint of the demonstrations, under a constraint that they do not contain, and
+//! unconstrained.
 
 pub(crate) mod all_around;
 mod constraint;
@@ -26,7 +27,7 @@ pub(crate) use robot::{Robot, robot};
 pub(crate) use scene::Scene;
 pub(crate) use starts_shown::starts_shown;
 
-/// Start postures that are shown.
+/// Number of start postures that are shown.
 const STARTS: usize = 4;
 
 /// Lengths in metres, angles in radians, all in the heel's frame: x forward, y left, z up.
@@ -40,7 +41,7 @@ pub(crate) struct GraspPlayback {
     pub(crate) learners: Vec<Choice>,
     /// Number of start postures.
     pub(crate) starts: usize,
-    /// Each constraint with each learner and each start.
+    /// One movement for each combination of constraint, learner and start.
     pub(crate) movements: Vec<Movement>,
 }
 
@@ -56,7 +57,7 @@ impl Sound for GraspPlayback {
     }
 }
 
-/// One thing to choose.
+/// One option of a selection.
 #[derive(Serialize, Deserialize)]
 pub(crate) struct Choice {
     pub(crate) id: String,

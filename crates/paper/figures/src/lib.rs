@@ -1,5 +1,5 @@
-//! The paper's figures. A run computes documents, plain numbers kept as `figures/*.json`; figures are drawn from these
-//! and from the results, and from nothing else, so that they can be drawn again without a run.
+//! The paper's figures. A run computes documents: plain numbers, stored as `figures/*.json`. Figures are drawn only
+//! from documents and results, so that they can be redrawn without a run.
 
 #[cfg(test)]
 mod beside_paper;
@@ -36,40 +36,40 @@ pub use numbered::figure8::{Ends, ends_of_reaching};
 use who::Who;
 pub use who::color_of;
 
-/// What a run computes for the figures, from fixed data sets.
+/// Data that a run computes for the figures, from fixed data sets.
 pub struct Document {
-    /// Names the file.
+    /// Name of the file.
     pub id: &'static str,
-    /// The experiment whose run it goes with; without one every run computes it.
+    /// The experiment that computes it; without one, every run does.
     experiment: Option<&'static str>,
     compute: Box<dyn Fn(u64) -> anyhow::Result<Value> + Sync>,
 }
 
 /// A figure of the paper.
 pub struct Figure {
-    /// Names the files.
+    /// Names of the files.
     pub id: &'static str,
-    /// As over the figure in the report.
+    /// The title above the figure in the report.
     pub title: &'static str,
-    /// What is drawn: true of every run.
+    /// Description of the drawing, true of every run.
     pub caption: &'static str,
-    /// How it compares with the paper's figure, where that has one. What depends on the run is said of the full run of
-    /// seed 1, by that name: it stands under the figures of all runs.
+    /// Comparison with the paper's figure, if there is one. Statements that depend on the run refer explicitly to the
+    /// full run with seed 1, because the text appears in the reports of all runs.
     pub beside_paper: Option<&'static str>,
-    /// What the full run shows otherwise than the paper's figure, in a line.
+    /// The difference between the full run and the paper's figure, in one line.
     pub differs: Option<&'static str>,
-    /// The experiment it stands beside in the report.
+    /// The experiment beside which the report shows it.
     pub experiment: Option<&'static str>,
-    /// Documents and experiments that it is drawn from.
+    /// Documents and experiments that it requires.
     needs: &'static [&'static str],
-    /// Documents that add to it.
+    /// Optional documents that add to it.
     also: &'static [&'static str],
     draw: fn(&Sources) -> anyhow::Result<Drawing>,
 }
 
 /// A picture, and the numbers of its curves.
 pub struct Drawing {
-    /// What is seen.
+    /// The image.
     pub picture: Picture,
     /// Written as `figures/<figure>-<name>.csv`.
     pub tables: Vec<Csv>,
@@ -77,19 +77,19 @@ pub struct Drawing {
 
 /// A table of numbers for other programs.
 pub struct Csv {
-    /// Ends the file's name.
+    /// Suffix of the file's name.
     pub name: &'static str,
     header: Vec<String>,
     rows: Vec<Vec<f64>>,
 }
 
-/// All that figures may be drawn from.
+/// All data from which figures may be drawn.
 pub struct Sources {
-    /// What was measured.
+    /// Results of the run.
     pub results: Results,
-    /// By id.
+    /// Documents by id.
     pub documents: BTreeMap<String, Value>,
-    /// Ids of documents that belong to the run and are not there.
+    /// Ids of documents that belong to the run but are missing.
     pub missing: Vec<&'static str>,
 }
 
@@ -131,10 +131,10 @@ pub fn figures() -> Vec<Figure> {
     ]
 }
 
-/// Computes the documents that go with these experiments.
+/// Computes the documents that belong to these experiments.
 ///
 /// # Errors
-/// If something cannot be made or learnt.
+/// If a data set cannot be generated or learnt from.
 pub fn compute(experiments: &[Experiment], seed: u64) -> anyhow::Result<BTreeMap<String, Value>> {
     let mut wanted = documents();
     wanted.retain(|document| document.experiment.is_none_or(|id| experiments.iter().any(|e| e.id == id)));
@@ -146,7 +146,7 @@ pub fn compute(experiments: &[Experiment], seed: u64) -> anyhow::Result<BTreeMap
 }
 
 impl Document {
-    /// A document that `compute` makes from a seed.
+    /// A document that `compute` generates from a seed.
     fn new<D: Serialize + 'static>(
         id: &'static str,
         experiment: Option<&'static str>,
@@ -157,7 +157,7 @@ impl Document {
 }
 
 impl Figure {
-    /// A figure with the words that `crates/paper/figures/words.toml` has for it.
+    /// A figure with its texts from `crates/paper/figures/words.toml`.
     fn new(
         id: &'static str,
         experiment: Option<&'static str>,
@@ -169,12 +169,12 @@ impl Figure {
         Figure { id, title, caption, beside_paper, differs, experiment, needs, also: &[], draw }
     }
 
-    /// Drawn with more in it where these documents are there, too; figure data of older runs lack some.
+    /// Adds optional documents, which show more if they exist; figure data of older runs lack some.
     fn with(self, also: &'static [&'static str]) -> Figure {
         Figure { also, ..self }
     }
 
-    /// Whether all that it needs was run.
+    /// Whether everything that it requires was run.
     pub fn can_be_drawn(&self, sources: &Sources) -> bool {
         let there = |id: &&str| sources.documents.contains_key(*id) || sources.experiment(id).is_some();
         self.needs.iter().all(there)
@@ -185,12 +185,12 @@ impl Figure {
         !self.can_be_drawn(sources) && self.needs.iter().any(|id| sources.missing.contains(id))
     }
 
-    /// Whether it is drawn, but not all of it, because documents are missing.
+    /// Whether it is drawn only in part because documents are missing.
     fn is_drawn_in_part(&self, sources: &Sources) -> bool {
         self.can_be_drawn(sources) && self.also.iter().any(|id| sources.missing.contains(id))
     }
 
-    /// Draws it; nothing where what it needs was not run.
+    /// Draws it; returns `None` if something that it requires was not run.
     fn draw(&self, sources: &Sources) -> anyhow::Result<Option<Drawing>> {
         if !self.can_be_drawn(sources) {
             return Ok(None);
@@ -199,10 +199,10 @@ impl Figure {
     }
 }
 
-/// Draws every figure that there are numbers for.
+/// Draws every figure whose data exist.
 ///
 /// # Errors
-/// Documents that are damaged.
+/// If a document is damaged.
 pub fn draw(sources: &Sources) -> anyhow::Result<Vec<(Figure, Drawing)>> {
     let drawn = |figure: Figure| Ok(figure.draw(sources)?.map(|drawing| (figure, drawing)));
     let drawn: Vec<_> = figures().into_par_iter().map(drawn).collect::<anyhow::Result<_>>()?;
@@ -214,13 +214,13 @@ pub fn undrawn(sources: &Sources) -> Vec<Figure> {
     figures().into_iter().filter(|figure| figure.misses(sources)).collect()
 }
 
-/// Figures of which something is not drawn because documents are missing.
+/// Figures that are drawn only in part because documents are missing.
 pub fn drawn_in_part(sources: &Sources) -> Vec<Figure> {
     figures().into_iter().filter(|figure| figure.is_drawn_in_part(sources)).collect()
 }
 
 impl Sources {
-    /// Results, and the documents that belong to them as far as `read` finds them by their ids.
+    /// Results, and those of their documents that `read` finds by id.
     ///
     /// # Errors
     /// Those of `read`.
@@ -241,7 +241,7 @@ impl Sources {
         self.results.experiment(id)
     }
 
-    /// A document, which has to be there.
+    /// A document; an error if it is missing or damaged.
     fn document<D: DeserializeOwned + Sound>(&self, id: &str) -> anyhow::Result<D> {
         const AGAIN: &str = "the command of its run writes it again";
         let value = self.documents.get(id).with_context(|| format!("figure data {id} is missing"))?;
@@ -256,7 +256,7 @@ impl Sources {
 }
 
 impl Csv {
-    /// As comma-separated values; what is not a number is an empty cell.
+    /// Formats the table as comma-separated values; a value that is not finite becomes an empty cell.
     pub fn text(&self) -> String {
         let cell = |value: &f64| if value.is_finite() { value.to_string() } else { String::new() };
         let row = |row: &Vec<f64>| row.iter().map(cell).collect::<Vec<_>>().join(",") + "\n";
@@ -264,7 +264,7 @@ impl Csv {
     }
 }
 
-/// Rounds to so many decimals: documents hold what can be seen, not what can be computed.
+/// Rounds to this many decimals, because documents store only what is visible.
 fn rounded(value: f64, decimals: i32) -> f64 {
     let scale = 10_f64.powi(decimals);
     (value * scale).round() / scale

@@ -1,21 +1,22 @@
-//! Small pictures of the plane of states, several on one canvas.
+//! Small pictures of a two-dimensional state space, several on one canvas.
 
 use plot::{Dash, Mark, Stroke, Thing};
 
-/// A square of the canvas that shows both states from −`extent` to `extent`. Lengths on the canvas are pixels.
+/// A square of the canvas that shows both state dimensions from −`extent` to `extent`. Lengths on the canvas are in
+/// pixels.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Miniature {
-    /// Upper left.
+    /// Upper left corner.
     pub(super) corner: (f64, f64),
     pub(super) side: f64,
     pub(super) extent: f64,
 }
 
-/// Around each.
+/// Colour of the frame around each.
 const FRAME: &str = "#c4c4c4";
 
 impl Miniature {
-    /// Where a state is on the canvas.
+    /// Position of a state on the canvas.
     pub(super) fn at(&self, (x, y): (f64, f64)) -> (f64, f64) {
         let (middle, unit) = (self.side / 2.0, self.side / (2.0 * self.extent));
         (self.corner.0 + middle + unit * x, self.corner.1 + middle - unit * y)
@@ -31,7 +32,7 @@ impl Miniature {
         Thing::Line { points: points.iter().map(|&point| self.at(point)).collect(), stroke }
     }
 
-    /// From a state on, so many units to the right and up.
+    /// An arrow from a state, (u, v) units to the right and up.
     pub(super) fn arrow(&self, (x, y): (f64, f64), (u, v): (f64, f64), color: &'static str, width: f64) -> Thing {
         Thing::Arrow { from: self.at((x, y)), to: self.at((x + u, y + v)), color, width }
     }
@@ -41,7 +42,7 @@ impl Miniature {
     }
 }
 
-/// The least square around the origin that holds these points and is not smaller than this, with a margin.
+/// Half the side of the smallest square around the origin that contains these points, at least `least`, with a margin.
 pub(super) fn extent_of<'p>(points: impl IntoIterator<Item = &'p (f64, f64)>, least: f64) -> f64 {
     1.04 * points.into_iter().fold(least, |reach, (x, y)| reach.max(x.abs()).max(y.abs()))
 }

@@ -1,4 +1,4 @@
-//! What it is about, in one picture: what was shown, and how wrong is what is learnt from it.
+//! The topic in one picture: the demonstrations, and the error of each learnt policy.
 
 use align::{Bandwidth, PolicyAlign};
 use demo_gen::{ToySystem, demonstrations};
@@ -17,25 +17,27 @@ use crate::state_plane::{Arrow, WIDTHS, actions, every_second};
 use crate::who::TRUTH;
 use crate::{Drawing, Sources, rounded};
 
-/// Starts of the movements are drawn from [−2, 2]²; shown is a little more, as movements leave that square.
+/// Starts of the movements are drawn from [−2, 2]². The picture shows slightly more, because movements leave that
+/// square.
 const SHOWN: f64 = 2.2;
 
-/// Of a panel, between panels, and above them, pixels: small, so that words are large where the picture is shown small.
+/// Side of a panel, gap between panels, and space above them, pixels. They are small, so that words remain legible
+/// where the picture is reduced.
 const SIDE: f64 = 205.0;
 const GAP: f64 = 12.0;
 const TOP: f64 = 34.0;
 
-/// Sizes of words, pixels.
+/// Font sizes, pixels.
 const SMALL: u32 = 14;
 const LARGE: u32 = 20;
 
-/// Rows that the slope GP learns from.
+/// Number of rows from which the slope GP learns.
 const ROWS: usize = 500;
 
-/// Arrows are drawn as long as this many seconds of movement.
+/// The length of an arrow corresponds to this many seconds of movement.
 const ARROW_SECONDS: f64 = 3.0;
 
-/// The first data set of the toy system, and what is learnt from it.
+/// The first data set of the toy system, and the policies learnt from it.
 #[derive(Serialize, Deserialize)]
 pub(crate) struct Overview {
     movements: Vec<Movement>,
@@ -93,7 +95,7 @@ pub(crate) fn overview(seed: u64) -> anyhow::Result<Overview> {
     })
 }
 
-/// What a panel says of its learner.
+/// The title of a learner's panel.
 fn title(who: Who) -> &'static str {
     match who {
         Who::Naive => "Naive: averaging",
@@ -129,7 +131,7 @@ fn words(at: (f64, f64), text: &str, size: u32, color: Option<&'static str>) -> 
     Thing::Words { at, text: text.to_owned(), size, centred: true, bold: size > SMALL, color }
 }
 
-/// A small picture with words above and below it, and the goal.
+/// A small picture with the goal, and words above and below it.
 fn panel(small: Miniature, [above, below]: [&str; 2], size: u32, who: Who, inside: Vec<Thing>) -> Vec<Thing> {
     let middle = small.corner.0 + SIDE / 2.0;
     let goal = small.mark((0.0, 0.0), Mark::Star, Who::Expert.color(), 8.0);
@@ -139,7 +141,7 @@ fn panel(small: Miniature, [above, below]: [&str; 2], size: u32, who: Who, insid
 }
 
 impl Overview {
-    /// The movements, with heads where they go to.
+    /// The movements, with arrowheads at their ends.
     fn shown(&self, small: Miniature) -> Vec<Thing> {
         let who = Who::Demonstration;
         let movement = |Movement { points, .. }: &Movement| {
@@ -152,7 +154,7 @@ impl Overview {
         panel(small, [&above, "unknown constraints"], SMALL, who, inside)
     }
 
-    /// What somebody learnt over the truth, and how wrong it is.
+    /// A learnt policy over the true one, with its error.
     fn learnt(&self, small: Miniature, who: Who, learnt: &[Arrow]) -> anyhow::Result<Vec<Thing>> {
         let error = error(&self.expert, learnt)?;
         let error = if error < 0.001 { "error < 0.001".to_owned() } else { format!("error {error:.2}") };
@@ -166,13 +168,13 @@ impl Overview {
     }
 }
 
-/// nUPE at these arrows.
+/// nUPE at the states of these arrows.
 fn error(truth: &[Arrow], learnt: &[Arrow]) -> anyhow::Result<f64> {
     let actions = |arrows: &[Arrow]| DMatrix::from_fn(2, arrows.len(), |row, at| [arrows[at].2, arrows[at].3][row]);
     Ok(metrics::nupe(&actions(truth), &actions(learnt))?)
 }
 
-/// Heads at the ends of movements: where they go to.
+/// Arrowheads at the ends of movements, in the direction of motion.
 fn ends(movements: &[Movement]) -> Vec<Arrow> {
     const HEAD: f64 = 0.13;
     let head = |movement: &Movement| {

@@ -1,4 +1,4 @@
-//! Documents are read from files that may be damaged: what each promises beyond its form is checked before it is drawn.
+//! Checks of documents. Their files may be damaged, so properties beyond the format are verified before drawing.
 
 use anyhow::ensure;
 use plot::Field;
@@ -6,18 +6,18 @@ use serde_json::Value;
 
 use crate::scene::shapes::Kind;
 
-/// What is promised of a document.
+/// Properties that a valid document has.
 pub(super) trait Sound {
-    /// No number in it is farther from 0.
+    /// Bound on the absolute value of all numbers.
     const LARGEST: f64;
 
-    /// Whether its parts fit together; the error says which do not.
+    /// Checks that its parts are consistent; the error names those that are not.
     fn check(&self) -> anyhow::Result<()> {
         Ok(())
     }
 }
 
-/// The first number that is farther from 0 than this.
+/// The first number whose absolute value exceeds `largest`.
 pub(super) fn beyond(value: &Value, largest: f64) -> Option<f64> {
     match value {
         Value::Number(number) => {
@@ -29,31 +29,31 @@ pub(super) fn beyond(value: &Value, largest: f64) -> Option<f64> {
     }
 }
 
-/// A list of as many things as there are places.
+/// Checks that a list has `places` elements.
 pub(super) fn as_many<T>(what: &str, things: &[T], places: usize) -> anyhow::Result<()> {
     ensure!(things.len() == places, "{what}: {} instead of {places}", things.len());
     Ok(())
 }
 
-/// A list of something.
+/// Checks that a list is not empty.
 pub(super) fn some<T>(what: &str, things: &[T]) -> anyhow::Result<()> {
     ensure!(!things.is_empty(), "{what}: none");
     Ok(())
 }
 
-/// Places in a list of so many things.
+/// Checks that indices are valid in a list of `things` elements.
 pub(super) fn among(what: &str, places: &[usize], things: usize) -> anyhow::Result<()> {
     let beyond = places.iter().find(|place| **place >= things);
     beyond.map_or(Ok(()), |place| Err(anyhow::anyhow!("{what}: the place {place} among {things}")))
 }
 
-/// Numbers that are nowhere farther from 0.
+/// Checks that no absolute value exceeds `largest`.
 pub(super) fn within(what: &str, numbers: &[f64], largest: f64) -> anyhow::Result<()> {
     let beyond = numbers.iter().find(|number| number.abs() > largest);
     beyond.map_or(Ok(()), |number| Err(anyhow::anyhow!("{what}: {number} is beyond {largest}")))
 }
 
-/// Three places or more on either axis, and room between them.
+/// Checks that both axes have at least three places, in ascending order.
 pub(super) fn field(what: &str, field: &Field) -> anyhow::Result<()> {
     for side in [field.x(), field.y()] {
         let rises = side.windows(2).all(|pair| pair[0] < pair[1]);
@@ -62,13 +62,13 @@ pub(super) fn field(what: &str, field: &Field) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// So many columns and rows.
+/// Checks the numbers of columns and rows.
 pub(super) fn grid<T>(what: &str, values: &[Vec<T>], columns: usize, rows: usize) -> anyhow::Result<()> {
     as_many(&format!("{what}, rows"), values, rows)?;
     values.iter().try_for_each(|row| as_many(&format!("{what}, columns"), row, columns))
 }
 
-/// As many lengths as a shape has, none of them negative.
+/// Checks that a shape has the right number of lengths, all positive.
 pub(super) fn size(kind: Kind, size: &[f64]) -> anyhow::Result<()> {
     let lengths = match kind {
         Kind::Sphere => 1,
@@ -86,7 +86,7 @@ mod tests {
     use super::*;
     use crate::beside_paper::records;
 
-    /// Places of one number and of one list of each kind in a document: the last of many alike.
+    /// Collects the paths of one number and one list of each kind in a document, the last of each kind.
     fn places(value: &Value, at: &str, kind: &str, all: &mut std::collections::BTreeMap<String, String>) {
         match value {
             Value::Array(values) => {
@@ -107,7 +107,7 @@ mod tests {
         }
     }
 
-    /// The committed run with something else at a place of a document.
+    /// Draws the committed run with one value of a document replaced.
     fn damaged(sources: &mut Sources, id: &str, at: &str, damage: &Value) -> Vec<(&'static str, Option<String>)> {
         let document = sources.documents[id].clone();
         *sources.documents.get_mut(id).unwrap().pointer_mut(at).unwrap() = damage.clone();

@@ -1,4 +1,4 @@
-//! The plane of a toy system's states, and what learners make of it.
+//! The plane of a toy system's states, with the learners' policies.
 
 use motion::Policy;
 use nalgebra::{DVector, dvector};
@@ -10,7 +10,7 @@ use crate::{Who, rounded};
 /// (x₁, x₂, u₁, u₂).
 pub(super) type Arrow = (f64, f64, f64, f64);
 
-/// Both states from −`extent` to `extent`, on a picture of this size, pixels.
+/// A plane with both state dimensions from −`extent` to `extent`; `size` in pixels.
 pub(super) fn state_plane(title: &str, extent: f64, layers: Vec<Layer>, size: (f64, f64)) -> Plane {
     let range = [-extent, extent];
     Plane {
@@ -24,18 +24,18 @@ pub(super) fn state_plane(title: &str, extent: f64, layers: Vec<Layer>, size: (f
     }
 }
 
-/// A function of the state from −`extent` to `extent`, with so many steps to either side of 0.
+/// A function of the state from −`extent` to `extent`, with `steps` steps to either side of 0.
 pub(super) fn on_grid(extent: f64, steps: i32, value: impl Fn(&DVector<f64>) -> f64) -> Result<Field, PlotError> {
     let grid: Vec<f64> = (-steps..=steps).map(|i| extent * f64::from(i) / f64::from(steps)).collect();
     let values = grid.iter().map(|&y| grid.iter().map(|&x| value(&dvector![x, y])).collect()).collect();
     Field::new(grid.clone(), grid, values)
 }
 
-/// Arrows in a row of their grid, and from one to the next.
+/// Number of arrows per row of the grid, and their spacing.
 const ACROSS: usize = 9;
 const APART: f64 = 0.45;
 
-/// The unconstrained actions of a policy on a grid, row by row; longer ones than can be meant are cut.
+/// The unconstrained actions of a policy on a grid, row by row; longer ones than `longest` are shortened.
 pub(super) fn actions(policy: &dyn Policy, longest: f64) -> Vec<Arrow> {
     let place = |at: usize| APART * (at as f64 - (ACROSS / 2) as f64);
     let grid = (0..ACROSS * ACROSS).map(|at| (place(at % ACROSS), place(at / ACROSS)));
@@ -46,15 +46,15 @@ pub(super) fn actions(policy: &dyn Policy, longest: f64) -> Vec<Arrow> {
     grid.map(arrow).collect()
 }
 
-/// Every second of these rows, and of each every second arrow: the corners of the grid and its middle are among them.
+/// Every second arrow of every second row; includes the corners of the grid and its centre.
 pub(super) fn every_second(arrows: &[Arrow]) -> Vec<Arrow> {
     arrows.chunks(ACROSS).step_by(2).flat_map(|row| row.iter().step_by(2).copied()).collect()
 }
 
-/// Widths of arrows, pixels: broad and grey what is true, over it what is learnt.
+/// Widths of arrows, pixels: wide and grey for the truth, and over it the learnt policy.
 pub(super) const WIDTHS: [f64; 2] = [5.5, 2.0];
 
-/// The true actions, and over them those that somebody learnt, as long as so many seconds of movement.
+/// The true actions, and over them a learner's; their length corresponds to `seconds` of movement.
 pub(super) fn compared(truth: &[Arrow], learnt: &[Arrow], who: Who, seconds: f64) -> Vec<Layer> {
     let layer = |arrows: &[Arrow], color, width| Layer::Arrows {
         arrows: every_second(arrows),

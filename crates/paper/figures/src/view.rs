@@ -1,4 +1,4 @@
-//! The grasp for a view that is walked around in: what its script is given of the figure data.
+//! Data of the 3-D view of the grasp: prepares the figure data for its script.
 
 use serde::Deserialize as _;
 use serde_json::{Value, json};
@@ -7,20 +7,20 @@ use crate::grasp_playback::{GraspPlayback, LEARNERS, Movement, starts_shown};
 use crate::scene::legs::{BONE, EYE, Leg, standing};
 use crate::scene::stage;
 
-/// Parts of a unit to which positions are rounded: as many as the figure data have digits.
+/// Number of parts of a unit to which positions are rounded; it matches the decimals of the figure data.
 const PARTS: f64 = 1e4;
 
-/// What the view plays.
+/// Data that the view plays back.
 pub struct Staged {
-    /// From which of the starts that are shown, counted from 1, the obstacle stops the expert.
+    /// Shown starts, counted from 1, from which the obstacle stops the expert.
     pub stopped: Vec<usize>,
-    /// As its script takes it.
+    /// Data for the view's script.
     pub playback: Value,
 }
 
-/// The figure data with the measures of what the figures draw around the robot, so that they are written once; legs apart
-/// from other shapes, as they are bent where they are drawn; and of all starts those that are shown. Rows of positions are
-/// steps from row to row, in whole parts of a unit, which takes half the room.
+/// The figure data of the starts that are shown. The dimensions of items that the figures draw around the robot are
+/// included, so that they are defined once. Legs are separate from other shapes, because the script bends them. Rows of
+/// positions are stored as differences between rows, in whole parts of a unit, which halves the size.
 pub fn staged(playback: &Value) -> Option<Staged> {
     let data = GraspPlayback::deserialize(playback).ok()?;
     let starts = starts_shown(&data);
@@ -49,7 +49,7 @@ pub fn staged(playback: &Value) -> Option<Staged> {
     Some(Staged { stopped: stopped(&data, &starts), playback })
 }
 
-/// Where the expert stops: farther from its place at the end than a hand's breadth.
+/// The starts from which the expert stops more than a hand's breadth from its target.
 fn stopped(data: &GraspPlayback, starts: &[usize]) -> Vec<usize> {
     const STOPPED: f64 = 0.1;
     let is_stopped = |start: &usize| {
@@ -77,7 +77,7 @@ fn steps(rows: &Value) -> Value {
     json!(rows.collect::<Vec<_>>())
 }
 
-/// The figures' colours, for the style sheet of the view.
+/// The figures' colours, for the view's style sheet.
 pub fn colors() -> String {
     let things = [("ball", stage::BALL), ("table", stage::TABLE), ("plate", stage::PLATE)];
     let all = things.into_iter().chain(LEARNERS.map(|(id, who)| (id, who.color())));

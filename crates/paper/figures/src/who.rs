@@ -1,28 +1,29 @@
-//! Who moves: one colour and line each in every picture.
+//! The moving agents, each with the same colour and line in every picture.
 
 use experiments::Method;
 use plot::{Dash, Stroke};
 
-/// Who moves: one colour and line each in every picture, distinct in grey and for colour-blind people.
+/// An agent that moves. Each has the same colour and line in every picture, distinguishable in grey and for
+/// colour-blind people.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Who {
     /// The true policy.
     Expert,
     /// Direct policy learning.
     Naive,
-    /// Aligned potentials.
+    /// A policy learnt from aligned potentials.
     PolicyAlign,
-    /// Aligned potentials, from demonstrations that come to the goal from all around too.
+    /// The same, with additional demonstrations that reach the goal from all sides.
     PolicyAlignAllAround,
-    /// A Gaussian process on the potential, seen through slopes.
+    /// A Gaussian process on the potential, observed through slopes.
     SlopeGp,
     /// A Gaussian process on the velocities.
     DirectGp,
-    /// Constrained movements that are learnt from.
+    /// Constrained movements of the training data.
     Demonstration,
 }
 
-/// The colour of a learner in every figure, as in HTML; none where no figure shows it.
+/// The colour of a learner in every figure, in HTML notation; `None` if no figure shows it.
 pub fn color_of(learner: Method) -> Option<&'static str> {
     let who = match learner {
         Method::Naive => Who::Naive,
@@ -34,11 +35,11 @@ pub fn color_of(learner: Method) -> Option<&'static str> {
     Some(who.color())
 }
 
-/// The true policy where something learnt lies over it: a grey.
+/// Grey, for the true policy where a learnt one is drawn over it.
 pub(crate) const TRUTH: &str = "#b4b4b4";
 
 impl Who {
-    /// The colour, as in HTML.
+    /// The colour, in HTML notation.
     pub(crate) const fn color(self) -> &'static str {
         match self {
             Who::Expert => "#1a1a1a",
@@ -51,7 +52,7 @@ impl Who {
         }
     }
 
-    /// How its line is broken.
+    /// The line's dashes.
     pub(crate) fn dash(self) -> Dash {
         match self {
             Who::Expert | Who::Demonstration | Who::SlopeGp => Dash::Solid,
@@ -73,7 +74,7 @@ impl Who {
         }
     }
 
-    /// A line as wide as this, in its colour and dashes.
+    /// A line of this width, in its colour and dashes.
     pub(crate) fn stroke(self, width: f64) -> Stroke {
         Stroke { color: self.color(), width, dash: self.dash() }
     }

@@ -1,11 +1,11 @@
-//! What stands beside the figures, from `crates/paper/figures/words.toml`.
+//! Texts of the figures, from `crates/paper/figures/words.toml`.
 
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
 use serde::Deserialize;
 
-/// The words of one figure.
+/// The texts of one figure.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Words {
@@ -15,12 +15,12 @@ pub(super) struct Words {
     pub(super) differs: Option<String>,
 }
 
-/// The words of all figures, by id.
+/// The texts of all figures, by id.
 static ALL: LazyLock<BTreeMap<String, Words>> = LazyLock::new(|| {
     toml::from_str(include_str!("../words.toml")).expect("crates/paper/figures/words.toml has words for each figure")
 });
 
-/// The words of a figure that has some.
+/// The texts of a figure; panics if it has none.
 pub(super) fn words(id: &str) -> &'static Words {
     &ALL[id]
 }

@@ -6,23 +6,23 @@ use nalgebra::{DMatrix, DVector, DVectorView, Point3};
 use crate::palm_control::PalmControl;
 use crate::{PalmTracking, PlaybackError};
 
-/// A movement of all joints, and how well it does what it should.
+/// A movement of all joints, with its accuracy.
 #[derive(Debug, Clone, PartialEq)]
 pub struct JointPath {
     /// Configurations, (n, N), all within the joints' limits.
     pub configurations: DMatrix<f64>,
-    /// How far the left palm (first row) and the right one are from where they should be, (2, N), metres.
+    /// Distances of the left palm (first row) and the right one from their targets, (2, N), metres.
     pub errors: DMatrix<f64>,
-    /// The narrowest gap between links that must not touch, (N), metres; 0 where some do.
+    /// The narrowest gap between links that must not touch, (N), metres; 0 if some do.
     pub clearances: DVector<f64>,
 }
 
 impl PalmTracking {
     /// The joint path that follows `palms`, a movement of left and right palm (6 dimensions, metres in the heel's frame),
-    /// from `posture` (n), which is clipped to the joints' limits and kept as the first configuration.
+    /// from `posture` (n), which is clipped to the joints' limits and becomes the first configuration.
     ///
-    /// What cannot be done - out of reach, where the body is, or too fast - is missed, and the errors say by how much. At the
-    /// samples no two links touch that did not in `posture`. See `docs/decisions/table2.md`.
+    /// Targets that cannot be reached, because they are too far away, inside the body, or require too fast a motion, are missed by
+    /// the distance in `errors`. At the samples no two links touch that did not in `posture`. See `docs/decisions/table2.md`.
     ///
     /// # Errors
     /// [`PlaybackError::Tracking`], [`PlaybackError::Clearance`], [`PlaybackError::Stride`], [`PlaybackError::Palms`], or
@@ -65,7 +65,7 @@ impl PalmTracking {
 }
 
 impl JointPath {
-    /// The path with what forward kinematics says of it.
+    /// The path, with its errors and clearances by forward kinematics.
     fn judged(body: &UpperBody, palms: &Trajectory, configurations: DMatrix<f64>) -> Result<Self, PlaybackError> {
         let n_samples = palms.n_samples();
         let (mut errors, mut clearances) = (DMatrix::zeros(2, n_samples), DVector::zeros(n_samples));

@@ -1,6 +1,6 @@
 //! Movements of a humanoid's palms carried out with all its joints.
 //!
-//! Learners see palms only (Section 4.2). Whoever wants to look at a movement needs a body that makes it:
+//! Learners use palms only (Section 4.2). Showing a movement requires a whole body:
 //! [`PalmTracking`] finds a [`JointPath`] that follows both palms within the joints' limits and keeps links apart.
 //!
 //! ```
@@ -18,8 +18,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Where to look: `joint_path` the movement, `palm_control` one correction of a configuration, `link_gaps` what keeps
-//! links apart, `task` rows of Jacobians with the rates asked of them.
+//! Modules: `joint_path` contains the movement, `palm_control` the correction of a configuration, `link_gaps` the avoidance of
+//! collisions, and `task` rows of Jacobians with their desired rates.
 
 mod error;
 mod joint_path;

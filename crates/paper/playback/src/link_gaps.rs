@@ -5,32 +5,33 @@ use nalgebra::{DMatrix, DVector};
 use crate::PlaybackError;
 use crate::task::Task;
 
-/// Links are watched while they are less than this beyond the clearance asked for, metres.
+/// Gaps between links are monitored if they exceed the desired clearance by less than this, metres.
 const WATCHED: f64 = 0.045;
 
-/// Share of their way to the clearance that two links may come nearer in one correction, or, too near, go back.
+/// Share of the remaining distance to the clearance by which a gap may narrow in one correction, or must widen if it is
+/// too narrow.
 const CLOSING: f64 = 0.3;
 
-/// Share of the clearance, or of a gap that is narrower already, that a correction must leave. A gap may shrink again and
-/// again, but never to nothing.
+/// Share of the clearance, or of a gap that is already narrower, that a correction must leave. A gap may shrink
+/// repeatedly, but never to zero.
 const LEAST: f64 = 0.5;
 
-/// Weight of a gap between links beside that of a palm, so large that gaps come first: a palm that is to be inside a leg
-/// goes elsewhere.
+/// Weight of a gap between links relative to a palm. It is so large that gaps take precedence: a palm with a target
+/// inside a leg goes elsewhere.
 const WEIGHT: f64 = 20.0;
 
-/// Links that must not touch and are near each other, in one configuration.
+/// Pairs of links that must not touch and are near each other, in one configuration.
 pub(crate) struct LinkGaps {
     clearance: f64,
-    /// Each pair's gap in metres, negative where they overlap.
+    /// Each pair's gap in metres, negative if they overlap.
     near: Vec<((LinkId, LinkId), f64)>,
     touching: Vec<(LinkId, LinkId)>,
-    /// How fast each gap must at least widen; less than 0 is how fast it may narrow.
+    /// Minimum rate at which each gap must widen; a negative rate allows narrowing.
     widening: Task,
 }
 
 impl LinkGaps {
-    /// The gaps at `q` (n); `clearance`, metres, is asked for.
+    /// The gaps at `q` (n), for a desired `clearance`, metres.
     pub(crate) fn at(
         q: &DVector<f64>,
         body: &UpperBody,
@@ -52,15 +53,15 @@ impl LinkGaps {
         &self.widening
     }
 
-    /// Whether a step that leads to the gaps `after` is allowed: nothing touches that did not, and no gap but one of
-    /// links that touched is too narrow.
+    /// Whether a step that leads to the gaps `after` is allowed: it causes no new contact, and no gap is too narrow
+    /// except between links that touched before.
     pub(crate) fn allow(&self, after: &LinkGaps) -> bool {
         after.touching.iter().all(|pair| self.touching.contains(pair)) && self.too_narrow(after).is_empty()
     }
 
-    /// What a `step` (n) has to do instead of one that leads to the gaps `after`: where links came too near, the place
-    /// where they did has to widen as any narrow gap. A flat hand beside a leg turns about one edge and hits it
-    /// with the other, of which the gradient of the gap knows nothing.
+    /// The additional task for repeating a `step` (n) that led to the gaps `after`. Where links came too near, the gap at
+    /// that place must widen like any narrow gap. For example, a flat hand beside a leg turns about one edge and hits the
+    /// leg with the other, which the gradient of the gap does not predict.
     pub(crate) fn instead(&self, after: &LinkGaps, step: &DVector<f64>) -> Task {
         let rows = self.too_narrow(after);
         let jacobian = after.widening.jacobian.select_rows(&rows);
@@ -73,7 +74,7 @@ impl LinkGaps {
         Task { jacobian, rates }
     }
 
-    /// Rows of `after` whose gaps are too narrow after these.
+    /// Rows of `after` whose gaps are too narrow compared with these.
     fn too_narrow(&self, after: &LinkGaps) -> Vec<usize> {
         let narrow = |row: &usize| {
             let (links, gap) = after.near[*row];
@@ -83,7 +84,7 @@ impl LinkGaps {
         (0..after.near.len()).filter(narrow).collect()
     }
 
-    /// The gap of two links, metres; the clearance where it is wider.
+    /// The gap between two links, metres, at most the clearance.
     fn gap(&self, links: (LinkId, LinkId)) -> f64 {
         let found = self.near.iter().find(|(pair, _)| *pair == links);
         found.map_or(self.clearance, |(_, gap)| gap.min(self.clearance))

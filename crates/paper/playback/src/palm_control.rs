@@ -6,8 +6,8 @@ use crate::link_gaps::LinkGaps;
 use crate::task::Task;
 use crate::{PalmTracking, PlaybackError};
 
-/// The posture that reaching arms are pulled to: before the body, elbows bent and a little outwards. All other joints are
-/// at 0: torso and head upright.
+/// The posture towards which reaching arms are pulled: hands before the body, elbows bent and slightly outwards. All
+/// other joints are at 0: torso and head upright.
 const REACHING: [(&str, f64); 8] = [
     ("l_shoulder_pitch", -1.0),
     ("l_shoulder_roll", 0.3),
@@ -19,20 +19,20 @@ const REACHING: [(&str, f64); 8] = [
     ("r_elbow", -0.8),
 ];
 
-/// How strongly a palm's way bends as joints turn, metres per radian squared. This times the palms' distance from where
-/// they should be is what a linear step leaves out, as a damping's square: with it a stretched arm does not flutter after
-/// what is out of reach, and palms in reach, whose distance vanishes, end as exactly as without.
+/// Curvature of a palm's path as joints turn, metres per radian squared. Its product with the palms' distance from their
+/// targets is the error of a linear step, and serves as the square of a damping. This prevents a stretched arm from
+/// oscillating when a target is out of reach. Palms within reach, whose distance vanishes, end as exactly as without it.
 const BEND: f64 = 0.2;
 
-/// Steps that are tried in one correction, each avoiding where those before it brought links too near.
+/// Number of steps tried in one correction; each avoids the places where earlier ones brought links too near.
 const TRIES: usize = 7;
 
-/// Both palms of a body, under control: small corrections of a configuration towards where they should be.
+/// Controller of both palms of a body: small corrections of a configuration towards their targets.
 pub(crate) struct PalmControl<'a> {
     body: &'a UpperBody,
     tracking: PalmTracking,
     reaching: DVector<f64>,
-    /// Where the joints may go until the next sample.
+    /// Limits of the joints until the next sample.
     lowest: DVector<f64>,
     highest: DVector<f64>,
     workspace: Workspace,
@@ -50,7 +50,7 @@ impl<'a> PalmControl<'a> {
         Ok(PalmControl { body, tracking, reaching, lowest, highest, workspace: Workspace::new(), velocity })
     }
 
-    /// Corrects `q` towards the wanted palms (6) of the next sample.
+    /// Corrects `q` towards the target places of the palms (6) at the next sample.
     pub(crate) fn follow(&mut self, q: &mut DVector<f64>, wanted: DVectorView<'_, f64>) -> Result<(), PlaybackError> {
         let stride = self.tracking.stride;
         for (at, joint) in self.body.robot().joints().iter().enumerate() {
@@ -65,7 +65,7 @@ impl<'a> PalmControl<'a> {
         Ok(())
     }
 
-    /// `q`, whose gaps these are, after one correction, and the gaps there; nothing where no step was found that keeps
+    /// `q`, whose gaps are `gaps`, after one correction, with the gaps there; `None` if no step was found that keeps
     /// links apart.
     fn corrected(
         &mut self,
@@ -88,12 +88,12 @@ impl<'a> PalmControl<'a> {
         Ok(None)
     }
 
-    /// Where a step from `q` leads that does what palms and gaps ask for.
+    /// The configuration after a step from `q` that performs the tasks of palms and gaps.
     fn step(&mut self, mut q: DVector<f64>, mut palms: Task, mut gaps: Task) -> Result<DVector<f64>, PlaybackError> {
         let damping = self.tracking.damping;
         let mut control = ResolvedRate::new((damping * damping + BEND * palms.rates.norm()).sqrt())?;
         let mut home = (&self.reaching - &q) * self.tracking.pull;
-        // A joint that would go too far goes as far as it may and stays there; the others make up for the rest.
+        // A joint that would exceed its limit stops there; the other joints compensate.
         loop {
             self.solve(&mut control, &palms, &gaps, &home)?;
             let mut free = true;
@@ -111,7 +111,7 @@ impl<'a> PalmControl<'a> {
         }
     }
 
-    /// Both palms go all the way.
+    /// The task that moves both palms all the way to their targets.
     fn palms(&mut self, q: &DVector<f64>, wanted: DVectorView<'_, f64>) -> Result<Task, PlaybackError> {
         let mut palms = Task { jacobian: DMatrix::zeros(6, q.len()), rates: wanted.into_owned() };
         let mut jacobian = Matrix3xX::zeros(q.len());
@@ -128,8 +128,8 @@ impl<'a> PalmControl<'a> {
         LinkGaps::at(q, self.body, self.tracking.clearance, &mut self.workspace)
     }
 
-    /// The velocity that follows the palms and goes `home` as far as they leave it free. A gap that would narrow too
-    /// fast becomes part of the task.
+    /// The velocity that follows the palms, and moves towards `home` within the remaining freedom. A gap that would
+    /// narrow too fast becomes part of the task.
     fn solve(
         &mut self,
         control: &mut ResolvedRate,

@@ -1,20 +1,20 @@
-/// Carries out a movement of both palms with all joints: damped resolved-rate control that keeps the body's links apart
-/// first, follows the palms second, and uses what freedom is left for a posture for reaching. Every step ends within the
-/// joints' limits.
+/// Carries out a movement of both palms with all joints, by damped resolved-rate control. Its first priority is keeping
+/// the body's links apart, its second following the palms; the remaining freedom serves a posture for reaching. Every
+/// step ends within the joints' limits.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PalmTracking {
-    /// Damping of the pseudo-inverse where palms are where they should be, metres per radian; it grows with their
-    /// distance. Default 0.02.
+    /// Damping of the pseudo-inverse at the targets of the palms, metres per radian; it grows with the distance from
+    /// them. Default 0.02.
     pub damping: f64,
-    /// Share of the way to the posture for reaching that each correction would go were the palms not in the way, 0 to 1.
+    /// Share of the distance to the reaching posture that each correction would move without the palms' task, 0 to 1.
     /// Default 0.01.
     pub pull: f64,
-    /// Links that must not touch are kept at least this far apart, metres. Default 0.005.
+    /// Minimum distance between links that must not touch, metres. Default 0.005.
     pub clearance: f64,
-    /// Corrections for each sample. Default 10.
+    /// Number of corrections for each sample. Default 10.
     pub corrections: usize,
-    /// How far a joint moves at most from one sample to the next, radians, or metres where it slides. Default 0.35, more
-    /// than demonstrations of [`Grasp`](demo_gen::Grasp) need; infinite is no bound.
+    /// Largest motion of a joint from one sample to the next, radians, or metres for sliding joints. Default 0.35, more
+    /// than demonstrations of [`Grasp`](demo_gen::Grasp) need; infinity means no bound.
     pub stride: f64,
 }
 

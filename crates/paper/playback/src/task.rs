@@ -1,6 +1,7 @@
 use nalgebra::{DMatrix, DVector};
 
-/// Rates of quantities that depend on the configuration: `jacobian` (m, n) times a step (n) should be `rates` (m).
+/// Desired rates of quantities that depend on the configuration: `jacobian` (m, n) times a step (n) should equal
+/// `rates` (m).
 #[derive(Debug, Clone)]
 pub(crate) struct Task {
     pub(crate) jacobian: DMatrix<f64>,
@@ -8,13 +9,13 @@ pub(crate) struct Task {
 }
 
 impl Task {
-    /// Takes a joint out that has moved by `displacement`, radians or metres, and stays there.
+    /// Removes a joint that has moved by `displacement`, radians or metres, and stays there.
     pub(crate) fn hold(&mut self, joint: usize, displacement: f64) {
         self.rates.axpy(-displacement, &self.jacobian.column(joint), 1.0);
         self.jacobian.column_mut(joint).fill(0.0);
     }
 
-    /// This task, and some `rows` of another below.
+    /// This task, with some `rows` of another appended.
     pub(crate) fn stacked(&self, other: &Task, rows: &[usize]) -> Task {
         let (own, n) = self.jacobian.shape();
         let jacobian = self.jacobian.clone().resize_vertically(own + rows.len(), 0.0);

@@ -1,4 +1,4 @@
-//! All joints follow a movement of the palms: what is reported is true, and how good it is.
+//! All joints follow a movement of the palms: tests of the reported values and of the accuracy.
 
 use constraints::Unconstrained;
 use demo_gen::{Grasp, GraspStart, UpperBody};
@@ -17,7 +17,7 @@ fn upper_body() -> UpperBody {
     UpperBody::new(UPPER_BODY, UPPER_BODY_SRDF).expect("the project's own robot")
 }
 
-/// The distance of each palm from where it should be, from forward kinematics anew.
+/// The distance of each palm from its target, recomputed by forward kinematics.
 fn literal_errors(body: &UpperBody, path: &JointPath, palms: &Trajectory) -> DMatrix<f64> {
     DMatrix::from_fn(2, palms.n_samples(), |hand, sample| {
         let reached = body.palms(path.configurations.column(sample)).expect("a path of this body")[hand];
@@ -25,7 +25,7 @@ fn literal_errors(body: &UpperBody, path: &JointPath, palms: &Trajectory) -> DMa
     })
 }
 
-/// The clearance of each configuration anew; it is 0 exactly where links collide.
+/// The recomputed clearance of each configuration; it is 0 exactly if links collide.
 fn literal_clearances(body: &UpperBody, path: &JointPath) -> DVector<f64> {
     let mut workspace = Workspace::new();
     let clearance = |q: DVectorView<'_, f64>| {
@@ -37,7 +37,7 @@ fn literal_clearances(body: &UpperBody, path: &JointPath) -> DVector<f64> {
     DVector::from_iterator(path.clearances.len(), path.configurations.column_iter().map(clearance))
 }
 
-/// How far a joint moves at most from one sample to the next, radians or metres.
+/// Largest motion of a joint from one sample to the next, radians or metres.
 fn largest_step(path: &JointPath) -> f64 {
     let steps = path.configurations.ncols() - 1;
     (path.configurations.columns(1, steps) - path.configurations.columns(0, steps)).amax()
@@ -53,8 +53,8 @@ fn touching(body: &UpperBody, path: &JointPath) -> Vec<Vec<(LinkId, LinkId)>> {
     path.configurations.column_iter().map(pairs).collect()
 }
 
-/// A posture anywhere within the joints' limits, in collision or not, and palms that go straight from one drawn place to
-/// the next: within reach, beyond it, through the body.
+/// Any posture within the joints' limits, in collision or not, and palms that move straight between random places: within
+/// reach, out of reach, or through the body.
 fn anything(body: &UpperBody, rng: &mut ChaCha8Rng) -> (DVector<f64>, Trajectory) {
     let joints = body.robot().joints();
     let posture = DVector::from_fn(joints.len(), |at, _| rng.random_range(joints[at].lower()..joints[at].upper()));
@@ -70,7 +70,7 @@ fn anything(body: &UpperBody, rng: &mut ChaCha8Rng) -> (DVector<f64>, Trajectory
     (posture, Trajectory::new(palms, 0.5).expect("sixteen samples"))
 }
 
-/// Limits, stride and links that keep apart hold for every path; errors and clearances are what they are.
+/// Checks limits, stride and new contacts of a path, and recomputes errors and clearances.
 fn assert_keeps_its_word(body: &UpperBody, tracking: PalmTracking, posture: &DVector<f64>, palms: &Trajectory) {
     let path = tracking.follow(body, palms, posture.as_view()).expect("palms of this body");
     assert_eq!(path.configurations.column(0), posture.column(0));
@@ -117,7 +117,7 @@ proptest! {
     }
 }
 
-/// The palms' way to the ball with nothing between, and bows to the side of up to 6 cm, which end elsewhere.
+/// The palms' unconstrained path to the ball, with random bows of up to 6 cm, which also change the ends.
 fn bowed(grasp: &Grasp, start: &GraspStart, rng: &mut ChaCha8Rng) -> Trajectory {
     let free = Unconstrained { dim: 6 };
     let straight = grasp.roll_out.record(&grasp.scene.potential(), &free, start.palms.as_view());
@@ -127,15 +127,15 @@ fn bowed(grasp: &Grasp, start: &GraspStart, rng: &mut ChaCha8Rng) -> Trajectory 
     let bowed = DMatrix::from_fn(6, straight.n_samples(), |row, sample| {
         let part = 1.0 - 0.95f64.powf(sample as f64);
         let bow = |waves: f64| (part * waves * std::f64::consts::PI).sin();
-        // The ends differ in y and z: the ball is at the edge of reach.
+        // The ends differ only in y and z, because the ball is at the edge of reach.
         let end = if row % 3 == 0 { 0.0 } else { part * bows[(row, 2)] };
         straight.state(sample)[row] + 0.06 * (bows[(row, 0)] * bow(1.0) + 0.5 * bows[(row, 1)] * bow(2.0) + end)
     });
     Trajectory::new(bowed, 0.5).expect("two samples or more")
 }
 
-/// Whether the joints can keep all links apart: hands are 3.5 cm thick, and palms may be asked nearer to a leg or to each
-/// other than that.
+/// Whether the joints can keep all links apart. Hands are 3.5 cm thick, and the palms' targets may be nearer to a leg or
+/// to each other than that.
 fn is_possible(palms: &Trajectory) -> bool {
     palms.states().column_iter().all(|palms| {
         let [left, right] = [0, 3].map(|at| Vector3::from(palms.fixed_rows::<3>(at)));
@@ -146,8 +146,8 @@ fn is_possible(palms: &Trajectory) -> bool {
     })
 }
 
-/// With the defaults the robot carries out what the palms do to within a third of a millimetre, without jerks, and
-/// nothing of it touches anything else of it: demonstrations, and what policies do under other constraints.
+/// With the defaults the robot follows the palms to within a third of a millimetre, without jerks or self-contact, both
+/// for demonstrations and for policies under other constraints.
 #[test]
 fn movements_are_followed_closely_and_links_keep_apart() {
     let grasp = Grasp::new(upper_body());
@@ -176,7 +176,7 @@ fn movements_are_followed_closely_and_links_keep_apart() {
     assert!(n_possible > n_paths * 8 / 10, "{n_possible} of {n_paths}");
 }
 
-/// The ready posture's palms, and the left one's straight way to a point, where it stays, (6, 60).
+/// The palms of the ready posture, with the left one moving straight to a point, where it stays, (6, 60).
 fn left_palm_to(body: &UpperBody, goal: Vector3<f64>) -> Trajectory {
     let [left, right] = body.palms(body.ready().as_view()).expect("a posture of this body").map(|palm| palm.coords);
     let palms = DMatrix::from_fn(6, 60, |row, sample| match row {
@@ -186,7 +186,7 @@ fn left_palm_to(body: &UpperBody, goal: Vector3<f64>) -> Trajectory {
     Trajectory::new(palms, 0.5).expect("sixty samples")
 }
 
-/// An arm stretched towards what is out of reach comes as near as it would with many more corrections, and rests.
+/// An arm stretched towards a target out of reach comes as near as with many more corrections, and rests.
 #[test]
 fn what_is_out_of_reach_is_pointed_at() {
     let body = upper_body();
@@ -203,7 +203,7 @@ fn what_is_out_of_reach_is_pointed_at() {
     }
 }
 
-/// A palm that is to be inside a leg stops beside it: half a hand is 1.75 cm thick, the leg's radius is 5.5 cm.
+/// A palm with a target inside a leg stops beside it: half a hand is 1.75 cm thick, the leg's radius is 5.5 cm.
 #[test]
 fn a_palm_stops_before_the_body() {
     let body = upper_body();
@@ -214,7 +214,7 @@ fn a_palm_stops_before_the_body() {
     assert!(path.errors.row(1).max() < 0.01, "{}", path.errors.row(1).max());
 }
 
-/// Where a leg is in the way of a palm, the hand goes around it without touching it, and is back where it should be.
+/// If a leg blocks the way of a palm, the hand moves around it without contact and returns to its target.
 #[test]
 fn a_palm_goes_around_the_body() {
     let grasp = Grasp::new(upper_body());

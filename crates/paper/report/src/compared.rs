@@ -1,5 +1,5 @@
-//! What there is to say of each cell: ours beside the paper's and beside another seed's, how sure the difference is, and
-//! why it stands out. The Markdown and the page say the same.
+//! The texts for each cell: our value beside the paper's and another seed's, the significance of the difference, and why
+//! it stands out. The Markdown and the page share them.
 
 use experiments::Experiment;
 use experiments::measure::{Measure, RowOf};
@@ -8,17 +8,17 @@ use experiments::verdict::Verdict;
 
 use super::tally::{STANDARD_ERRORS, z};
 
-/// Data sets below which single cells are not worth an explanation.
+/// With fewer data sets, single cells get no explanation.
 pub(super) const FEW: usize = 20;
 
-/// What stands where there is nothing to say.
+/// Placeholder for an empty cell.
 pub(super) const NOTHING: &str = "–";
 
-/// One experiment of a run, beside the paper and another seed.
+/// One experiment of a run, compared with the paper and another seed.
 pub(super) struct Compared<'a> {
     pub(super) experiment: &'a Experiment,
     pub(super) result: &'a ExperimentResult,
-    /// The same from another seed.
+    /// The same experiment from another seed.
     pub(super) second: Option<Second<'a>>,
 }
 
@@ -37,11 +37,11 @@ pub(super) struct Line<'a> {
     pub(super) cell: &'a Cell,
     /// The same cell from another seed.
     second: Option<&'a Cell>,
-    /// Data sets of the paper.
+    /// Number of the paper's data sets.
     paper_n: u32,
 }
 
-/// Every experiment that was run, in the order of the results.
+/// Every experiment of the run, in the order of the results.
 pub(super) fn compared<'a>(
     experiments: &'a [Experiment],
     results: &'a Results,
@@ -59,7 +59,7 @@ pub(super) fn compared<'a>(
 }
 
 impl<'a> Compared<'a> {
-    /// Whether the paper prints figures; else it shows curves.
+    /// Whether the paper prints numbers for the experiment; otherwise it shows curves.
     pub(super) fn is_printed(&self) -> bool {
         !self.experiment.paper.is_empty()
     }
@@ -75,13 +75,13 @@ impl<'a> Compared<'a> {
         row.measures.iter().map(line)
     }
 
-    /// The rows of the paper's own learners; the others stand in tables of learners.
+    /// The rows of the paper's own learners; the other rows are in the tables of learners.
     pub(super) fn rows(&self) -> impl Iterator<Item = &'a RowResult> {
         let is_additional = |id: &str| self.experiment.rows().any(|row| row.id == id && row.of == RowOf::Additional);
         self.result.rows.iter().filter(move |row| !is_additional(&row.id))
     }
 
-    /// Their cells.
+    /// The cells of these rows.
     pub(super) fn lines(&self) -> impl Iterator<Item = Line<'a>> {
         self.rows().flat_map(|row| self.lines_of(row))
     }
@@ -91,14 +91,14 @@ impl<'a> Compared<'a> {
         self.rows().any(|row| row.data_sets < FEW)
     }
 
-    /// The cells that need a word, each with it.
+    /// The cells that stand out, with their explanations.
     pub(super) fn standing_out(&self) -> Vec<(Line<'a>, &'a str)> {
         let word = |line: &Line<'_>| self.experiment.explain(&line.row.id, line.measure);
         let lines = self.lines().filter(Line::stands_out);
         lines.map(|line| (line, word(&line).unwrap_or("no explanation has been found yet."))).collect()
     }
 
-    /// Rows of which not every data set could be measured.
+    /// Rows in which some data sets failed, with their number.
     pub(super) fn failures(&self) -> impl Iterator<Item = (&'a str, String)> {
         let failed = self.result.rows.iter().filter(|row| row.failed > 0);
         failed.map(|row| (row.id.as_str(), format!("{} of {} data sets failed", row.failed, row.data_sets)))
@@ -106,13 +106,13 @@ impl<'a> Compared<'a> {
 }
 
 impl Line<'_> {
-    /// Whether a printed number is missed, or the difference is more than chance.
+    /// Whether the verdict is other than "agrees", or the difference is significant.
     fn stands_out(&self) -> bool {
         let is_sure = z(self.cell, self.paper_n).is_some_and(|z| z.abs() > STANDARD_ERRORS);
         self.cell.verdict.is_some_and(|verdict| verdict != Verdict::Agrees || is_sure)
     }
 
-    /// Data sets that have a value.
+    /// Number of data sets with a value.
     pub(super) fn n(&self) -> usize {
         self.cell.n()
     }
@@ -149,7 +149,7 @@ impl Line<'_> {
         z(self.cell, self.paper_n).map_or(NOTHING.to_owned(), |z| format!("{z:+.1}"))
     }
 
-    /// How many times our standard deviation is the printed one, where they differ by more than a factor of two.
+    /// Ratio of our standard deviation to the printed one, if they differ by more than a factor of two.
     pub(super) fn spread_ratio(&self) -> Option<String> {
         let (paper, sd) = self.cell.paper.zip(self.cell.sd)?;
         let ratio = sd / paper.sd;
@@ -166,7 +166,7 @@ impl Line<'_> {
         self.second.map_or(NOTHING.to_owned(), |cell| self.measure.show(cell.mean))
     }
 
-    /// The other seed's verdict, where there is one.
+    /// The other seed's verdict, if any.
     pub(super) fn second_verdict(&self) -> &'static str {
         self.second.and_then(|cell| cell.verdict).map_or("", Verdict::word)
     }
@@ -178,7 +178,7 @@ mod tests {
 
     use super::*;
 
-    /// Of every printed number of the records that is missed, or further away than chance, the report says what was tried.
+    /// The report explains every printed number of the records that is missed or differs significantly.
     #[test]
     fn what_stands_out_is_explained() {
         let experiments = registry().unwrap();

@@ -11,22 +11,22 @@ use page::markdown_table;
 
 use super::compared::NOTHING;
 
-/// So many lines are named one by one.
+/// Up to this many lines are named individually.
 const FEW: usize = 5;
 
-/// A ratio below this is shown as "0": it says nothing but that rounding is left.
+/// A ratio below this is shown as "0", because it reflects only rounding errors.
 const NEGLIGIBLE: f64 = 1e-9;
 
-/// The comparisons of an experiment, as far as they were run.
+/// The comparisons of an experiment, as far as the run includes them.
 pub(crate) struct Comparisons<'a> {
-    /// What has to be said of them.
+    /// A remark about these comparisons.
     pub(crate) remark: Option<&'static str>,
-    /// Who has a column.
+    /// The learners, one column each.
     pub(crate) methods: Vec<Method>,
     pub(crate) lines: Vec<ComparisonLine<'a>>,
 }
 
-/// One error of several learners, on the data sets that all of them have.
+/// One error of several learners, on the data sets that all of them share.
 pub(crate) struct ComparisonLine<'a> {
     pub(crate) comparison: &'a Comparison,
     pub(crate) n: usize,
@@ -34,7 +34,7 @@ pub(crate) struct ComparisonLine<'a> {
 }
 
 impl<'a> Comparisons<'a> {
-    /// Nothing where an experiment has none, or none was run.
+    /// Returns `None` if an experiment has no comparisons, or none was run.
     pub(crate) fn of(experiment: &'a Experiment, result: &'a ExperimentResult) -> Option<Comparisons<'a>> {
         let cell = |row: &str, measure: Measure| {
             result.rows.iter().find(|other| other.id == row).and_then(|row| row.measures.get(&measure))
@@ -52,19 +52,20 @@ impl<'a> Comparisons<'a> {
         (!lines.is_empty()).then_some(Comparisons { remark: experiment.comparisons_remark, methods, lines })
     }
 
-    /// As a table.
+    /// The comparisons as a Markdown table.
     pub(crate) fn markdown(&self) -> String {
         markdown_table(&self.header(), &self.rows())
     }
 
-    /// What stands over the columns.
+    /// The column headers.
     pub(crate) fn header(&self) -> Vec<&'static str> {
         let learners = self.methods.iter().map(|who| who.label());
         let ratio = self.has_ratio().then_some("slope GP / PolicyAlign");
         ["learnt from", "error of", "n"].into_iter().chain(learners).chain(ratio).collect()
     }
 
-    /// One line a comparison: its case, its error, its data sets, each learner's mean, the least emphasised, and a ratio of means.
+    /// One row per comparison: its case, its error, its number of data sets, each learner's mean (the least emphasised), and a
+    /// ratio of means.
     pub(crate) fn rows(&self) -> Vec<Vec<String>> {
         self.lines.iter().map(|line| self.row(line)).collect()
     }
@@ -82,7 +83,7 @@ impl<'a> Comparisons<'a> {
         first.into_iter().chain(self.methods.iter().map(mean)).chain(ratio).collect()
     }
 
-    /// Who errs least, and where PolicyAlign errs more than another method of its time.
+    /// Which learners err least, and where PolicyAlign errs more than another method of its time.
     pub(crate) fn findings(&self) -> String {
         let mut least: BTreeMap<Method, usize> = BTreeMap::new();
         for line in &self.lines {
@@ -116,14 +117,14 @@ impl<'a> Comparisons<'a> {
 }
 
 impl ComparisonLine<'_> {
-    /// The mean over the data sets that all have.
+    /// The mean over the data sets that all learners share.
     pub(crate) fn mean(&self, who: Method) -> Option<f64> {
         let (_, cell) = self.cells.iter().find(|(other, _)| *other == who)?;
         let values: Vec<f64> = cell.values[..self.n].iter().flatten().copied().collect();
         (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
     }
 
-    /// Whose mean is the smallest; "automatic" and "no trend" are not learners.
+    /// The learner with the smallest mean; "automatic" and "no trend" do not count as learners.
     pub(crate) fn least(&self) -> Method {
         let means = self.cells.iter().filter(|(who, _)| !matches!(who, Method::AutoGp | Method::SlopeGpNoTrend));
         let means = means.filter_map(|(who, _)| Some((*who, self.mean(*who)?)));
@@ -135,7 +136,7 @@ impl ComparisonLine<'_> {
         self.mean(who).zip(self.mean(Method::PolicyAlign)).is_some_and(|(who, policy_align)| who < policy_align)
     }
 
-    /// Its case, and of which error.
+    /// The case and the error.
     fn name(&self) -> String {
         format!("`{}` {}", self.comparison.case, self.comparison.measure.label())
     }
@@ -146,7 +147,8 @@ impl ComparisonLine<'_> {
     }
 }
 
-/// Errors of these learners differ by orders of magnitude: two digits that count, of small ones one and the exponent.
+/// Formats a mean: two significant digits, or for small means one digit and the exponent, because the errors of these
+/// learners differ by orders of magnitude.
 pub(crate) fn shown_mean(mean: f64) -> String {
     match mean {
         0.0 => "0".to_owned(),
@@ -163,7 +165,7 @@ fn shown_ratio(ratio: f64) -> String {
     }
 }
 
-/// What has to be said of such tables.
+/// A caution about such tables.
 pub(crate) const CAUTION: &str = "\
 In comparisons of learners, numbers are means over the first n data sets, fewer than in the paper's tables (errors of data sets differ by factors of \
 up to a thousand). All learners get the same recordings and test samples. Parabola, grasp, body and arm have quadratic potentials, which the slope GP's \
@@ -187,8 +189,8 @@ mod tests {
         RowResult { id: id.to_owned(), tested_on: String::new(), data_sets: values.len(), failed: 0, measures }
     }
 
-    /// PolicyAlign has more data sets than the others: only the first ones count, and a set without a value for nobody
-    /// but its own learner.
+    /// PolicyAlign has more data sets than the others: only the first ones count. A set that is missing for one learner still
+    /// counts for the others.
     #[test]
     fn means_are_over_the_data_sets_that_all_have() {
         let experiments = registry().unwrap();

@@ -1,4 +1,5 @@
-//! What a run shows of the learners: who errs least, how they classify movements, and how well they expect their errors.
+//! Findings about the learners: which errs least, how movements are classified, and how well the expected errors match the
+//! true ones.
 
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
@@ -10,16 +11,16 @@ use page::markdown_table;
 
 use super::comparisons::{ComparisonLine, Comparisons, shown_mean};
 
-/// Errors below this are as good as none, and need no forecast.
+/// Errors below this are negligible, so their forecasts do not count.
 const WORTH_A_FORECAST: f64 = 1e-3;
 
-/// Cases of policies that have no potential begin with one of these.
+/// Cases of policies without a potential begin with one of these.
 const ROTATIONAL: [&str; 2] = ["swirl", "limit-cycle"];
 
-/// The experiments whose tables of learners are shown whole: harder movements, and harder constraints.
+/// The experiments whose tables of learners are shown in full: harder movements and harder constraints.
 const SHOWN_WHOLE: [&str; 2] = ["beyond", "constraints"];
 
-/// What a reader needs in order to choose, as Markdown; every table is in the report.
+/// The information for choosing a learner, as Markdown; the report contains every table.
 pub fn learners(experiments: &[Experiment], results: &Results) -> String {
     let compared = |(experiment, result)| Some((experiment, Comparisons::of(experiment, result)?));
     let all: Vec<_> = results.of(experiments).filter_map(compared).collect();
@@ -35,7 +36,8 @@ pub fn learners(experiments: &[Experiment], results: &Results) -> String {
     text
 }
 
-/// How often each learner has the least mean error, and the naive one less than PolicyAlign: a line an experiment.
+/// One row per experiment: how often each learner has the least mean error, and how often the naive one errs less than
+/// PolicyAlign.
 fn wins(all: &[(&Experiment, Comparisons<'_>)]) -> String {
     let winners: BTreeSet<Method> =
         all.iter().flat_map(|(_, comparisons)| comparisons.lines.iter().map(ComparisonLine::least)).collect();
@@ -53,8 +55,8 @@ fn wins(all: &[(&Experiment, Comparisons<'_>)]) -> String {
     markdown_table(&header, &all.iter().map(line).collect::<Vec<_>>())
 }
 
-/// What the learners' policies err on movements that they did not learn from, in a sentence each: from new starts, and learnt
-/// from few demonstrations. Only what was measured.
+/// The errors of the learners' policies on movements that they did not learn from: one sentence for new starts, one for few
+/// demonstrations. Omits sentences without measurements.
 pub fn on_new_movements(experiments: &[Experiment], results: &[ExperimentResult]) -> Vec<String> {
     let errors = |id: &str, case: &str, measure: Measure| {
         let experiment = experiments.iter().find(|experiment| experiment.id == id)?;
@@ -92,11 +94,11 @@ fn values(row: &RowResult, measure: Measure) -> &[Option<f64>] {
     row.measures.get(&measure).map_or(&[], |cell| &cell.values)
 }
 
-/// Over the columns of [`confusion`].
+/// The column headers of [`confusion`].
 pub(super) const READ_AS: [&str; 6] =
     ["movements are", "data sets", "read as free", "constrained", "ambiguous", "unexplained"];
 
-/// How often movements of each kind are read as what.
+/// For each kind of movement, how often each reading occurs.
 pub(super) fn confusion(readings: &ExperimentResult) -> Vec<Vec<String>> {
     const READ: [Measure; 4] =
         [Measure::ReadFree, Measure::ReadConstrained, Measure::ReadAmbiguous, Measure::ReadUnexplained];
@@ -138,7 +140,7 @@ fn free(readings: &ExperimentResult) -> String {
     format!("All free data sets are classified as free{but}.{}\n", corridors.collect::<String>())
 }
 
-/// Expected over true error of every fit of the slope GP and of the direct GP that errs by something.
+/// Expected over true error of every fit of the slope GP and the direct GP whose error is not negligible.
 fn expected(results: &Results) -> String {
     let line = |(under, who): (Under, Method)| {
         let rows = results.experiments.iter().flat_map(|result| rows_of(result, who));
@@ -176,7 +178,8 @@ fn expected(results: &Results) -> String {
     )
 }
 
-/// How many of the slope GP's fits to the wanted cases expect their error within ten times.
+/// Number of the slope GP's fits to the selected cases whose expected error is within a factor of ten of the true one, and
+/// their total.
 fn share(results: &Results, wanted: fn(&str) -> bool) -> String {
     let rows = results.experiments.iter().flat_map(|result| rows_of(result, Method::SlopeGp));
     let ratios: Vec<f64> = rows.filter(|(case, _)| wanted(case)).flat_map(|(_, row)| ratios(row)).collect();
@@ -184,7 +187,8 @@ fn share(results: &Results, wanted: fn(&str) -> bool) -> String {
     format!("{within} of {}", ratios.len())
 }
 
-/// Where the slope GP expects an error more than ten times too high or too low, and how often, under constraints that vary.
+/// Cases under varying constraints in which the slope GP's expected error is more than ten times too high or too low, and how
+/// often.
 fn outside(results: &[ExperimentResult]) -> Vec<String> {
     let mut named = Vec::new();
     for result in results {
@@ -203,7 +207,7 @@ fn outside(results: &[ExperimentResult]) -> Vec<String> {
     named
 }
 
-/// What held movements back.
+/// The constraints on the movements of a case.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Under {
     Varying,
@@ -211,7 +215,7 @@ enum Under {
 }
 
 impl Under {
-    /// Cases of free movement, and of one constraint for all, are named so.
+    /// Derives it from the name: cases of free movement, and of one constraint for all, are named accordingly.
     fn of(case: &str) -> Under {
         let is_kind = ["free/", "one-for-all/", "handwriting"].iter().any(|kind| case.starts_with(kind));
         let without = is_kind || case.ends_with("-free") || case.ends_with("one-constraint-for-all");
@@ -234,14 +238,14 @@ fn ratios(row: &RowResult) -> Vec<f64> {
     both.filter(|(_, error)| *error >= WORTH_A_FORECAST).map(|(expected, error)| expected / error).collect()
 }
 
-/// How often rotation is found where there is some, and where there is none.
+/// How often rotation is found in policies with and without rotation.
 fn rotation(results: &Results) -> String {
     let mut seen = BTreeSet::new();
     let (mut there, mut not_there) = ([0; 2], [0; 2]);
     for result in &results.experiments {
         for who in [Method::SlopeGp, Method::SlopeGpNoTrend] {
             for (case, row) in rows_of(result, who) {
-                // Rows that differ in what they are tested on come from the same fits.
+                // Rows that differ only in their test movements come from the same fits.
                 let fits: Vec<u64> = values(row, Measure::ExpectedNupe).iter().flatten().map(|v| v.to_bits()).collect();
                 let kind = case.rsplit_once('/').map_or(case, |(_, kind)| kind);
                 if case.starts_with("handwriting") || kind.contains("positions") || !seen.insert(fits) {
@@ -341,7 +345,7 @@ mod tests {
         assert_eq!(sentences(&rows), [expected]);
     }
 
-    /// Of rows with errors of all movements these count, and errors that are as good as none do not.
+    /// If a row has errors over all movements, these count; negligible errors do not count.
     #[test]
     fn expected_errors_are_compared_with_the_true_ones() {
         let (nupe, all, expected) = (Measure::Nupe, Measure::NupeAll, Measure::ExpectedNupe);

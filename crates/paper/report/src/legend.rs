@@ -2,7 +2,7 @@
 
 use experiments::measure::Measure;
 
-/// What stands in the columns and how cells are judged; `**` is about what is emphasised.
+/// Describes the columns and the verdicts; `**` marks emphasis.
 pub(super) const RULE: &str = "\
 Errors are mean squared errors as a share of the variance of the true policy or potential: 0 is perfect.
 \"ours\" is the mean ± the sample standard deviation over data sets, \"n\" how many there are, \"paper\" what is printed. \"z\" is the
@@ -12,7 +12,7 @@ are otherwise **lower** or **higher**; lower can mean an easier set-up or a smoo
 **differ**: discard rates, the error of alignment, which follows from the time step, and the naive learner's errors. \"s.d.\" is ours over the
 printed one, where they are apart by more than a factor of two; it plays no part in the verdict.";
 
-/// Measures and what they are.
+/// Measures and their meanings.
 pub(super) const MEASURES: [(&[Measure], &str); 14] = [
     (&[Measure::PotentialNmse], "error of the learnt potential (A3)"),
     (
@@ -42,7 +42,7 @@ pub(super) const MEASURES: [(&[Measure], &str); 14] = [
     ),
 ];
 
-/// What names of rows and settings mean.
+/// Meanings of the names of rows and settings.
 pub(super) const TERMS: [(&str, &str); 11] = [
     ("40x40, 100x100", "so many movements of so many samples each"),
     (
@@ -77,17 +77,17 @@ pub(super) const TERMS: [(&str, &str); 11] = [
     ),
 ];
 
-/// What a measure is.
+/// The meaning of a measure.
 pub(super) fn meaning(measure: Measure) -> Option<&'static str> {
     MEASURES.into_iter().find(|(measures, _)| measures.contains(&measure)).map(|(_, meaning)| meaning)
 }
 
-/// What a name means, as it stands in names of rows and settings.
+/// The meaning of one part of a row's or setting's name.
 pub(super) fn term(name: &str) -> Option<&'static str> {
     TERMS.into_iter().find(|(names, _)| names.split(", ").any(|other| other == name)).map(|(_, meaning)| meaning)
 }
 
-/// Names of measures, one after the other.
+/// Names of measures, separated by semicolons.
 pub(super) fn names(measures: &[Measure], name: fn(Measure) -> &'static str) -> String {
     measures.iter().map(|&measure| name(measure)).collect::<Vec<_>>().join("; ")
 }

@@ -1,9 +1,9 @@
-//! What a run says, beside the paper and beside another seed's run: in words, tables and a page.
+//! Reports on a run, compared with the paper and with a run from another seed: as text, tables and a page.
 //!
 //! - [`terminal`]: the printed cells. [`markdown()`]: everything; [`printed`]: the printed cells. [`page()`]: everything with its figures.
 //! - [`learners()`]: learners side by side. [`Tally`]: how many printed cells got which verdict.
 //!
-//! It is given experiments, results and drawn figures; to read and write is up to whoever asks.
+//! The crate receives experiments, results and drawn figures; the caller reads and writes files.
 
 mod compared;
 mod comparisons;

@@ -1,4 +1,4 @@
-//! The tables of a run beside the paper's, as Markdown.
+//! The tables of a run compared with the paper's, as Markdown.
 
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
@@ -14,7 +14,7 @@ use super::comparisons::{CAUTION, Comparisons};
 use super::legend::{MEASURES, RULE, names};
 use super::tally::Tally;
 
-/// All tables of `results`; `second`, a run from another seed, adds its means as a column.
+/// All tables of `results`; `second`, a run with another seed, adds its means as a column.
 pub fn markdown(experiments: &[Experiment], results: &Results, second: Option<&Results>) -> String {
     let all = compared(experiments, results, second);
     let sections: String = all.iter().map(|compared| section(compared, results.seed)).collect();
@@ -28,22 +28,22 @@ fn key() -> String {
     format!("{RULE}\n\n{CAUTION}\n\n| measure | is |\n| --- | --- |\n{measures}\n")
 }
 
-/// An experiment beside the paper.
+/// An experiment, compared with the paper.
 pub struct Section<'a> {
-    /// Which.
+    /// The experiment.
     pub experiment: &'a Experiment,
-    /// Its printed cells as Markdown: a line for each row of the paper's table, each cell ours and in brackets the paper's;
-    /// where the two do not agree, with the verdict.
+    /// Its printed cells as Markdown, a line for each row of the paper's table. Each cell has our value and the paper's in
+    /// brackets, and the verdict unless they agree.
     pub text: String,
 }
 
-/// Every experiment of which the paper prints numbers, in short.
+/// Short sections of all experiments with printed numbers.
 pub fn printed<'a>(experiments: &'a [Experiment], results: &'a Results) -> impl Iterator<Item = Section<'a>> {
     let all = compared(experiments, results, None).into_iter().filter(Compared::is_printed);
     all.map(|compared| Section { experiment: compared.experiment, text: matrix(&compared) })
 }
 
-/// The printed cells, rows down and measures across.
+/// The printed cells as a matrix of rows and measures.
 fn matrix(compared: &Compared<'_>) -> String {
     let is_printed = |line: &Line<'_>| line.cell.paper.is_some();
     let measures: BTreeSet<Measure> = compared.lines().filter(is_printed).map(|line| line.measure).collect();
@@ -58,7 +58,7 @@ fn matrix(compared: &Compared<'_>) -> String {
     markdown_table(&header, &compared.rows().map(row).collect::<Vec<_>>())
 }
 
-/// Ours, the paper's in brackets, and the verdict unless they agree.
+/// Our value, the paper's in brackets, and the verdict unless they agree.
 fn in_brief(line: &Line<'_>) -> String {
     let (ours, paper) =
         (line.mean(), line.cell.paper.map_or(String::new(), |paper| line.measure.show_printed(paper.mean)));
@@ -94,26 +94,26 @@ fn section(compared: &Compared<'_>, seed: u64) -> String {
     text + &comparisons(compared)
 }
 
-/// Learners side by side, where there are several.
+/// Learners side by side, in experiments that compare several.
 fn comparisons(compared: &Compared<'_>) -> String {
     let Some(comparisons) = Comparisons::of(compared.experiment, compared.result) else { return String::new() };
     let remark = comparisons.remark.map_or(String::new(), |remark| format!("{remark}\n\n"));
     folded("Learners side by side", &format!("{}\n\n{remark}{}", comparisons.findings(), comparisons.markdown()))
 }
 
-/// What is seen only by who opens it. Markdown within needs the empty lines.
+/// A section that the reader must unfold. The empty lines are required for Markdown inside.
 fn folded(summary: &str, text: &str) -> String {
     format!("<details><summary>{summary}</summary>\n\n{}\n\n</details>\n\n", text.trim_end())
 }
 
-/// A column: what stands over it and in it.
+/// A column: its header and the text of each cell.
 type Column<'a> = (String, fn(&Line<'a>) -> String);
 
 fn column<'a>(name: &str, show: fn(&Line<'a>) -> String) -> Column<'a> {
     (name.to_owned(), show)
 }
 
-/// What a printed cell is compared with, and the verdict.
+/// Columns for comparing a printed cell with the paper, with the verdict.
 fn judged<'a>() -> Vec<Column<'a>> {
     vec![
         column("measure", |line| line.measure.name().to_owned()),
@@ -125,7 +125,7 @@ fn judged<'a>() -> Vec<Column<'a>> {
     ]
 }
 
-/// All there is to know of any cell.
+/// All columns of any cell.
 fn in_full<'a>(compared: &Compared<'a>) -> Vec<Column<'a>> {
     let mut columns = vec![
         column("measure", |line| line.measure.name().to_owned()),
@@ -142,7 +142,7 @@ fn in_full<'a>(compared: &Compared<'a>) -> Vec<Column<'a>> {
     columns
 }
 
-/// The wanted cells, row by row.
+/// A table of the selected cells, row by row.
 fn table<'a>(compared: &Compared<'a>, columns: &[Column<'a>], wanted: fn(&Line<'a>) -> bool) -> String {
     let header: Vec<&str> = ["row"].into_iter().chain(columns.iter().map(|(name, _)| name.as_str())).collect();
     let mut rows = Vec::new();

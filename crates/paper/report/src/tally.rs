@@ -1,4 +1,4 @@
-//! How our numbers compare with the printed ones in all: by which factor, and with which verdicts.
+//! Summary of all comparisons with the printed numbers: factors and verdicts.
 
 use std::collections::BTreeMap;
 
@@ -6,18 +6,19 @@ use experiments::Experiment;
 use experiments::results::{Cell, ExperimentResult};
 use experiments::verdict::Verdict;
 
-/// Standard errors within which two means may well be the same.
+/// Number of standard errors within which two means may well be equal.
 pub(super) const STANDARD_ERRORS: f64 = 2.0;
 
-/// A factor up to which two numbers are close.
+/// Factor up to which two numbers count as close.
 const CLOSE: f64 = 1.5;
 
-/// How many of the printed cells are reached, and how.
+/// Counts of the printed cells by verdict.
 pub struct Tally {
     counts: BTreeMap<Verdict, usize>,
     varying: usize,
     alike: usize,
-    /// Between ours and the printed number, at least 1, where neither is 0; ascending.
+    /// Factors between our numbers and the printed ones, at least 1, in ascending order; cells where either is 0 are
+    /// omitted.
     factors: Vec<f64>,
 }
 
@@ -39,45 +40,45 @@ impl Tally {
         tally
     }
 
-    /// In all, as the paper's words have it: of a table that is read in two ways, the reading to the letter counts.
+    /// Counts each table once: of a table with two readings, only the literal one counts.
     pub fn of_literal_readings<'a>(results: impl IntoIterator<Item = (&'a Experiment, &'a ExperimentResult)>) -> Tally {
         let results: Vec<_> = results.into_iter().collect();
         let is_read_otherwise = |id: &str| results.iter().any(|(other, _)| other.another_reading_of == Some(id));
         Tally::of(results.iter().copied().filter(|(experiment, _)| !is_read_otherwise(experiment.id)))
     }
 
-    /// In all: of another reading of a table no cell counts again.
+    /// Counts each table once: of a table with two readings, only the first one counts.
     pub fn of_first_readings<'a>(results: impl IntoIterator<Item = (&'a Experiment, &'a ExperimentResult)>) -> Tally {
         Tally::of(results.into_iter().filter(|(experiment, _)| experiment.another_reading_of.is_none()))
     }
 
-    /// Of [`varying`](Self::varying) ones, those whose means differ by no more than two standard errors.
+    /// Number of [`varying`](Self::varying) cells whose means differ by no more than two standard errors.
     pub(crate) fn alike(&self) -> usize {
         self.alike
     }
 
-    /// Printed cells of which it can be said how sure a difference is: where something varies, here or in the paper.
+    /// Number of printed cells with a standard error: the values vary, here or in the paper.
     pub(crate) fn varying(&self) -> usize {
         self.varying
     }
 
-    /// The median factor between ours and the printed number, at least 1; none where no cell has one.
+    /// The median factor between our numbers and the printed ones, at least 1; `None` if no cell has a factor.
     pub fn median_factor(&self) -> Option<f64> {
         let (below, above) = (self.factors.len().checked_sub(1)? / 2, self.factors.len() / 2);
         Some(f64::midpoint(self.factors[below], self.factors[above]))
     }
 
-    /// How many cells are within 1.5 times the printed number, and how many have a factor.
+    /// Number of cells within 1.5 times the printed number, and number of cells with a factor.
     pub fn close(&self) -> (usize, usize) {
         (self.factors.iter().filter(|&&factor| factor <= CLOSE).count(), self.factors.len())
     }
 
-    /// Printed cells.
+    /// Number of printed cells.
     pub fn total(&self) -> usize {
         self.counts.values().sum()
     }
 
-    /// The verdicts that there are, from the best known to the worst, with their numbers.
+    /// The verdicts that occur, from the best to the worst, with their counts.
     pub(crate) fn counts(&self) -> impl Iterator<Item = (Verdict, usize)> {
         self.counts.iter().map(|(&verdict, &count)| (verdict, count))
     }
@@ -88,7 +89,7 @@ impl Tally {
         verdicts.collect::<Vec<_>>().join(", ")
     }
 
-    /// Factor, tally and how sure it is, a sentence each; nothing where no cells are printed.
+    /// The factor, the verdicts and their significance, one sentence each; empty if no cells are printed.
     pub fn sentences(&self) -> Vec<String> {
         let mut sentences = Vec::new();
         if let Some(median) = self.median_factor() {
@@ -106,26 +107,26 @@ impl Tally {
         sentences
     }
 
-    /// All of them.
+    /// All [`sentences`](Self::sentences), joined.
     pub fn sentence(&self) -> String {
         self.sentences().join(" ")
     }
 }
 
-/// By how much our mean and the printed one differ, as a factor of at least 1.
+/// The factor by which our mean and the printed one differ, at least 1.
 fn factor(cell: &Cell) -> Option<f64> {
     let ratio = cell.mean / cell.paper?.mean;
     (ratio > 0.0 && ratio.is_finite()).then(|| ratio.max(1.0 / ratio))
 }
 
-/// Difference of our mean and the printed one over its standard error; none where nothing is printed, or nothing varies.
+/// Difference of our mean and the printed one over its standard error; `None` if nothing is printed or nothing varies.
 pub(super) fn z(cell: &Cell, paper_n: u32) -> Option<f64> {
     let (paper, sd) = cell.paper.zip(cell.sd)?;
     let variance = sd.powi(2) / cell.n() as f64 + paper.sd.powi(2) / f64::from(paper_n);
     (variance > 0.0).then(|| (cell.mean - paper.mean) / variance.sqrt())
 }
 
-/// The verdict as the words after a number of cells.
+/// The verdict, worded to follow a number of cells.
 pub(crate) fn after(verdict: Verdict, count: usize) -> &'static str {
     if count == 1 { verdict.singular() } else { verdict.plural() }
 }
@@ -156,7 +157,7 @@ mod tests {
         assert_eq!(tally(&[1.0, 1.5, 2.0]).close(), (2, 3));
     }
 
-    /// Either reading of Table 1 counts once.
+    /// Each tally counts one reading of Table 1.
     #[test]
     fn both_tallies_count_every_printed_cell_once() {
         let text = include_str!("../../../../docs/records/seed-1/results.json");

@@ -1,4 +1,4 @@
-//! What a run shows when it ends: the printed cells, fitted to 80 columns. Everything else is in the report.
+//! The terminal output at the end of a run: the printed cells, fitted to 80 columns. Everything else is in the report.
 
 use std::fmt::Write as _;
 
@@ -11,7 +11,7 @@ use super::compared::{Compared, Line, compared};
 use super::comparisons::Comparisons;
 use super::tally::Tally;
 
-/// A table an experiment; colours are left out where the standard output is no terminal, and by `NO_COLOR`.
+/// One table per experiment, without colours if the standard output is no terminal or `NO_COLOR` is set.
 pub fn terminal(experiments: &[Experiment], results: &Results) -> String {
     compared(experiments, results, None).iter().map(section).collect()
 }
@@ -45,7 +45,7 @@ fn section(compared: &Compared<'_>) -> String {
     text
 }
 
-/// What the report has of an experiment that prints no numbers.
+/// A summary of the report on an experiment without printed numbers.
 fn counted(compared: &Compared<'_>) -> String {
     let comparisons =
         Comparisons::of(compared.experiment, compared.result).map_or(0, |comparisons| comparisons.lines.len());
@@ -69,7 +69,7 @@ fn colour(verdict: Verdict) -> Style {
     }
 }
 
-/// Names to the left, numbers to the right.
+/// Formats a line: names on the left, numbers on the right.
 fn line(name: &str, measure: &str, numbers: [&str; 3], verdict: &str) -> String {
     let [ours, paper, z] = numbers;
     format!("{name:<25} {measure:<16} {ours:>8} {paper:>8} {z:>6}  {verdict}").trim_end().to_owned()
@@ -82,7 +82,7 @@ mod tests {
 
     use super::*;
 
-    /// Columns of the narrowest terminal that is catered for.
+    /// Width of the narrowest supported terminal.
     const COLUMNS: usize = 80;
 
     #[test]

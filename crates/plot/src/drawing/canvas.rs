@@ -5,12 +5,12 @@ use crate::drawing::elements::{area, arrowhead, line};
 use crate::sign::shape;
 use crate::{Mark, Panel, Sketch, Stroke};
 
-/// A drawing without axes. All places are pixels from its upper left corner.
+/// A drawing without axes. All positions are in pixels from its upper left corner.
 #[derive(Debug, Clone)]
 pub struct Canvas {
-    /// Later ones lie on top.
+    /// The things; later ones are drawn on top.
     pub things: Vec<Thing>,
-    /// Pixels.
+    /// Size in pixels.
     pub size: (f64, f64),
 }
 
@@ -19,46 +19,46 @@ pub struct Canvas {
 pub enum Thing {
     /// A line through points.
     Line {
-        /// From its start to its end.
+        /// From start to end.
         points: Vec<(f64, f64)>,
-        /// How it looks.
+        /// Its style.
         stroke: Stroke,
     },
-    /// An arrow; none where it would be shorter than a pixel.
+    /// An arrow; omitted if it would be shorter than a pixel.
     Arrow {
-        /// Its foot.
+        /// Its start.
         from: (f64, f64),
         /// Its tip.
         to: (f64, f64),
-        /// As in HTML.
+        /// In HTML notation.
         color: &'static str,
-        /// Of the shaft.
+        /// Width of the shaft.
         width: f64,
     },
     /// A mark.
     Mark {
-        /// Its middle.
+        /// Its centre.
         at: (f64, f64),
         /// Its shape.
         mark: Mark,
-        /// As in HTML.
+        /// In HTML notation.
         color: &'static str,
         /// Half its width.
         size: f64,
     },
-    /// A line of words.
+    /// A line of text.
     Words {
-        /// The middle of its foot, or the left end.
+        /// The centre or the left end of its baseline.
         at: (f64, f64),
-        /// As they are written.
+        /// The text.
         text: String,
-        /// Height of the letters.
+        /// Font size.
         size: u32,
-        /// Whether `at` is the middle.
+        /// Whether `at` is the centre.
         centred: bool,
-        /// Whether letters are thick.
+        /// Whether the text is bold.
         bold: bool,
-        /// As in HTML; the colour of all words without one.
+        /// In HTML notation; without one, the default colour of text.
         color: Option<&'static str>,
     },
 }
@@ -94,7 +94,7 @@ fn drawn(thing: &Thing) -> Vec<Primitive> {
     }
 }
 
-/// Shaft and head; a head is no longer than most of its arrow.
+/// Shaft and head; the head takes at most a fixed share of a short arrow.
 fn arrow(from: (f64, f64), to: (f64, f64), color: &str, width: f64) -> Vec<Primitive> {
     let length = (to.0 - from.0).hypot(to.1 - from.1);
     if length < 1.0 {

@@ -1,10 +1,10 @@
-//! Lines in dashes, taken apart.
+//! Splits dashed lines into their dashes.
 
 use kuva::render::render::Primitive;
 use nalgebra::Point3;
 
-/// An element of a scene as pixels need it: the plotting crate begins its dashes anew at each point of a line there,
-/// which leaves none where points are close.
+/// An element of a scene, prepared for pixels. There the plotting crate restarts its dashes at each point of a line, which
+/// leaves none if points are close.
 pub(crate) fn drawn(element: &Primitive) -> Vec<Primitive> {
     let (points, stroke, stroke_width, pattern) = match element {
         Primitive::PolyLine { points, stroke, stroke_width, stroke_dasharray: Some(pattern) } => {
@@ -26,10 +26,10 @@ pub(crate) fn drawn(element: &Primitive) -> Vec<Primitive> {
     dashed(&points, &pattern).into_iter().map(solid).collect()
 }
 
-/// Farther out, pixels, no dash can be seen, and a line to there would have more than memory holds.
+/// Farther out, pixels, no dash is visible, and the dashes of a line to there would exceed the memory.
 const OUTSIDE: f64 = 1e5;
 
-/// The parts of a line that a pattern draws; its lengths are measured on the panel. A line that leads far outside is solid.
+/// The parts of a line that a pattern draws, with lengths measured on the panel. A line that leads far outside is solid.
 pub(crate) fn dashed(points: &[Point3<f64>], pattern: &[f64]) -> Vec<Vec<Point3<f64>>> {
     let near = |point: &Point3<f64>| point.x.abs() < OUTSIDE && point.y.abs() < OUTSIDE;
     if pattern.is_empty() || !points.iter().all(near) {
@@ -68,7 +68,7 @@ mod tests {
 
     #[test]
     fn dashes_go_on_from_point_to_point() {
-        // A line of twelve, by points one apart.
+        // A line of length twelve, with points at unit distance.
         let points: Vec<(f64, f64)> = (0..=12).map(|x| (f64::from(x), 5.0)).collect();
         let line = Primitive::PolyLine {
             points,

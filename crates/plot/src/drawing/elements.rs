@@ -1,11 +1,11 @@
-//! Elements that the plotting crate draws, without what all of them leave out.
+//! Elements of the plotting crate, without their unused attributes.
 
 use std::fmt::Write as _;
 
 use kuva::render::color::Color;
 use kuva::render::render::{PathData, Primitive, TextAnchor};
 
-/// A place, pixels.
+/// A position, pixels.
 type Place = (f64, f64);
 
 /// A straight line.
@@ -32,8 +32,8 @@ pub(crate) fn area(corners: &[Place], fill: Color) -> Primitive {
     Primitive::Path(Box::new(PathData { d, fill, stroke, stroke_width, opacity: None, stroke_dasharray: None }))
 }
 
-/// The flat head at the end of an arrow, so long and half so wide, pixels: its foot, where the shaft ends, and its corners from
-/// the tip on. The arrow is not empty.
+/// The flat head at the end of an arrow, with this length and half width, pixels: its base, where the shaft ends, and its
+/// corners, beginning with the tip. The arrow must not have length 0.
 pub(crate) fn arrowhead(from: Place, to: Place, length: f64, half_width: f64) -> (Place, [Place; 3]) {
     let (u, v) = (to.0 - from.0, to.1 - from.1);
     let arrow = u.hypot(v);
@@ -47,14 +47,14 @@ pub(crate) fn rectangle((x, y): Place, (width, height): Place, fill: Color, opac
     Primitive::Rect { x, y, width, height, fill, stroke: None, stroke_width: None, opacity: Some(opacity) }
 }
 
-/// A disc, with an edge where that has a colour.
+/// A disc, with an edge if that has a colour.
 #[cfg(feature = "space")]
 pub(crate) fn disc(centre: &nalgebra::Point2<f64>, r: f64, fill: Color, stroke: Option<Color>) -> Primitive {
     let (cx, cy, stroke_width) = (centre.x, centre.y, stroke.as_ref().map(|_| 1.0));
     Primitive::Circle { cx, cy, r, fill, fill_opacity: None, stroke_width, stroke }
 }
 
-/// Level words in the colour of all words.
+/// Horizontal text in the default colour of text.
 pub(crate) fn words((x, y): Place, text: &str, size: u32, anchor: TextAnchor) -> Primitive {
     Primitive::Text { x, y, content: text.to_owned(), size, anchor, rotate: None, bold: false, color: None }
 }

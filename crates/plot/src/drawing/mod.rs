@@ -1,4 +1,4 @@
-//! What all pictures are drawn with.
+//! Drawing tools that all pictures use.
 
 pub(crate) mod canvas;
 pub(crate) mod dashes;

@@ -1,4 +1,4 @@
-//! Pixels under a drawing.
+//! Pixels behind a drawing.
 
 use std::fmt::Write as _;
 
@@ -7,19 +7,19 @@ use kuva::render::render::Primitive;
 
 use crate::drawing::elements::rectangle;
 
-/// Dots along a side of a pixel.
+/// Number of dots along a side of a pixel.
 pub(crate) const DOTS: usize = 2;
 
 /// A rectangle of coloured dots.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Raster {
-    /// Where its upper left corner is, pixels.
+    /// Position of its upper left corner, pixels.
     pub(crate) corner: (f64, f64),
-    /// How wide and high a dot is, pixels.
+    /// Width and height of a dot, pixels.
     pub(crate) side: f64,
-    /// Dots in a row.
+    /// Number of dots per row.
     pub(crate) width: usize,
-    /// Red, green, blue, and how much of it there is; row by row.
+    /// Red, green, blue and opacity; row by row.
     pub(crate) dots: Vec<[u8; 4]>,
 }
 
@@ -28,17 +28,18 @@ impl Raster {
         self.dots.len() / self.width
     }
 
-    /// As an element of a drawing.
+    /// The raster as an element of a drawing.
     pub(crate) fn svg(&self) -> String {
         let ((x, y), [width, height]) = (self.corner, [self.width, self.height()].map(|dots| dots as f64 * self.side));
         let data = base64(&self.png());
         format!(r#"<image x="{x}" y="{y}" width="{width}" height="{height}" href="data:image/png;base64,{data}"/>"#)
     }
 
-    /// As areas of one colour each, which have whole dots as their sides.
+    /// The raster as rectangles of one colour each, whose sides are whole numbers of dots.
     pub(crate) fn areas(&self) -> Vec<Primitive> {
         let side = self.side;
-        // Where dots are not those of the file, neighbours lie a little on each other, or their edges would shine through.
+        // If dots do not coincide with those of the file, neighbours overlap slightly; otherwise gaps would be visible
+        // between them.
         let lap = if (side * DOTS as f64 - 1.0).abs() < 1e-12 { 0.0 } else { side / 2.0 };
         let mut areas = vec![];
         for (row, dots) in self.dots.chunks(self.width).enumerate() {
@@ -56,7 +57,7 @@ impl Raster {
         areas
     }
 
-    /// As a file.
+    /// The raster as a PNG file.
     fn png(&self) -> Vec<u8> {
         let mut file = Vec::new();
         let mut encoder = png::Encoder::new(&mut file, self.width as u32, self.height() as u32);
@@ -69,19 +70,19 @@ impl Raster {
     }
 }
 
-/// Length of a PNG file's signature and its first chunk, after which what belongs to the whole picture may stand.
+/// Length of a PNG file's signature and its first chunk, after which chunks about the whole picture are allowed.
 const HEAD: usize = 8 + 25;
 
-/// The chunk "pHYs": length, name, dots to a metre across and down, their unit, check sum.
+/// The chunk "pHYs": length, name, dots per metre across and down, their unit, checksum.
 const DENSITY: [u8; 21] = *b"\0\0\0\x09pHYs\0\0\x1d\x87\0\0\x1d\x87\x01\x8f\xe5\xf1\x65";
 
-/// A PNG file that says how large it is meant: [`DOTS`] to each of 96 pixels an inch.
+/// Adds the intended size to a PNG file: [`DOTS`] per pixel, 96 pixels per inch.
 pub(crate) fn with_density(mut file: Vec<u8>) -> Vec<u8> {
     file.splice(HEAD..HEAD, DENSITY);
     file
 }
 
-/// Bytes as letters, three to four (RFC 4648).
+/// Encodes bytes as base 64 (RFC 4648).
 fn base64(bytes: &[u8]) -> String {
     const LETTERS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);

@@ -1,5 +1,5 @@
-//! Samples of lines and arrows before their names: the plotting crate draws a line there, too short for dashes and
-//! without a head.
+//! Samples of lines and arrows before their names in the legend. The plotting crate draws a line there, too short for
+//! dashes and without an arrowhead.
 
 use kuva::render::render::{Primitive, Scene};
 
@@ -12,14 +12,14 @@ const TO: f64 = 4.0;
 /// Length and half width of a head, pixels.
 const HEAD: (f64, f64) = (8.0, 3.6);
 
-/// What a name is of.
+/// The kind of thing that a name denotes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Sample {
     Line,
     Arrow,
 }
 
-/// Draws the samples before these names anew.
+/// Redraws the samples before these names.
 pub(crate) fn draw(names: &[(&str, Sample)], scene: &mut Scene) {
     let mut drawn = Vec::with_capacity(scene.elements.len());
     let mut named = None;

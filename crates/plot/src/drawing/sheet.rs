@@ -4,10 +4,10 @@ use kuva::render::render::{Primitive, Scene, TextAnchor};
 
 /// Width of a digit, as a share of its height.
 const DIGIT: f64 = 0.64;
-/// Pixels that stay free between the numbers of an axis.
+/// Minimum distance between the numbers of an axis, pixels.
 const FREE: f64 = 6.0;
 
-/// A layout of this title and size, pixels.
+/// A layout with this title and size, pixels.
 pub(crate) fn titled(plots: &[Plot], title: &str, (width, height): (f64, f64)) -> Layout {
     Layout::auto_from_plots(plots).with_title(title).with_title_size(15).with_width(width).with_height(height)
 }
@@ -15,11 +15,11 @@ pub(crate) fn titled(plots: &[Plot], title: &str, (width, height): (f64, f64)) -
 /// A quantity along an edge of a panel.
 pub(crate) struct Edge<'a> {
     pub(crate) label: &'a str,
-    /// From and to.
+    /// Lower and upper end.
     pub(crate) range: [f64; 2],
 }
 
-/// The layout with both axes named and bounded.
+/// The layout with labels and ranges of both axes.
 pub(crate) fn with_axes(layout: Layout, x: &Edge<'_>, y: &Edge<'_>) -> Layout {
     layout
         .with_label_size(12)
@@ -31,7 +31,7 @@ pub(crate) fn with_axes(layout: Layout, x: &Edge<'_>, y: &Edge<'_>) -> Layout {
         .with_y_axis_max(y.range[1])
 }
 
-/// Leaves out every other number along the horizontal axis until none lies on its neighbour: in a small panel long ones would.
+/// Removes every other number along the horizontal axis until none overlap, as long numbers would in a small panel.
 pub(crate) fn uncrowd(scene: &mut Scene) {
     loop {
         let numbers = row_of_numbers(scene);
@@ -51,7 +51,7 @@ pub(crate) fn uncrowd(scene: &mut Scene) {
     }
 }
 
-/// The lowest row of centred numbers, from left to right: which element each is, its middle and its width.
+/// The lowest row of centred numbers, from left to right: index, centre and width of each.
 fn row_of_numbers(scene: &Scene) -> Vec<(usize, f64, f64)> {
     let number = |(at, element): (usize, &Primitive)| match element {
         Primitive::Text { x, y, content, size, anchor: TextAnchor::Middle, rotate: None, .. }

@@ -1,4 +1,4 @@
-//! Fields in colours without visible squares: dots between the places of their grid.
+//! Fields in smooth colours, without visible squares: interpolates dots between the grid points.
 
 use kuva::render::render::{Primitive, Scene};
 
@@ -6,15 +6,15 @@ use crate::drawing::raster::Raster;
 use crate::drawing::style::height;
 use crate::{Field, Sketch};
 
-/// Dots from one place of the grid to the next.
+/// Number of dots from one grid point to the next.
 const DOTS: usize = 3;
 
-/// Takes a field's stand-in of two by two squares out of a scene and puts the place of pixels there; the pixels.
+/// Replaces a field's stand-in of two by two squares in a scene by a placeholder for pixels; returns the pixels.
 pub(crate) fn instead_of_squares(field: &Field, colors: [f64; 2], number: usize, scene: &mut Scene) -> Option<Raster> {
     let at = scene.elements.iter().position(|element| matches!(element, Primitive::RectBatch { .. }))?;
     let Primitive::RectBatch { x, y, .. } = &scene.elements[at] else { return None };
     let ([left, right], [top, _]) = (range(x), range(y));
-    // Two squares are as wide as the field; one unit is as long on either axis.
+    // Two squares are as wide as the field; both axes have the same scale.
     let width = DOTS * (field.x().len() - 1);
     let side = 2.0 * (right - left) / width as f64;
     let ends = [Primitive::GroupEnd, Primitive::GroupEnd];
@@ -22,13 +22,14 @@ pub(crate) fn instead_of_squares(field: &Field, colors: [f64; 2], number: usize,
     Some(Raster { corner: (left, top), side, width, dots: dots(field, colors) })
 }
 
-/// The least and the largest.
+/// Smallest and largest value.
 pub(crate) fn range<'a>(values: impl IntoIterator<Item = &'a f64>) -> [f64; 2] {
     let wider = |[low, high]: [f64; 2], &value: &f64| [low.min(value), high.max(value)];
     values.into_iter().fold([f64::INFINITY, f64::NEG_INFINITY], wider)
 }
 
-/// Colours of the dots, row by row from above; of values from the darkest to the lightest.
+/// Colours of the dots, row by row from the top; `low` and `high` are the values of the darkest and the lightest
+/// colour.
 fn dots(field: &Field, [low, high]: [f64; 2]) -> Vec<[u8; 4]> {
     let values = field.values();
     let [width, rows] = [field.x(), field.y()].map(|grid| DOTS * (grid.len() - 1));
@@ -41,7 +42,7 @@ fn dots(field: &Field, [low, high]: [f64; 2]) -> Vec<[u8; 4]> {
         let level = |i: usize| values[i][j] * (1.0 - right) + values[i][j + 1] * right;
         let value = level(i) * (1.0 - up) + level(i + 1) * up;
         let share = (value - low) / (high - low);
-        // Of a field that is the same everywhere, the colour in the middle.
+        // A constant field has the middle colour.
         let [r, g, b] = height(if share.is_nan() { 0.5 } else { share });
         [r, g, b, if value.is_finite() { 255 } else { 0 }]
     };
@@ -67,7 +68,7 @@ mod tests {
         let light = |dot: &[u8; 4]| dot[..3].iter().map(|&part| i32::from(part)).sum::<i32>();
         assert!(column.windows(2).all(|pair| light(pair[0]) > light(pair[1])), "{column:?}");
         assert!(dots[..12].iter().all(|dot| dot == &dots[0]));
-        // On a scale that goes twice as far up the highest place has the colour of the middle.
+        // If the scale extends twice as far up, the highest value has the middle colour.
         let darker = super::dots(&field, [0.0, 8.0]);
         assert!(light(&darker[0]) < light(&dots[0]) && darker[0][..3] == height(0.5 - 1.0 / 48.0));
     }

@@ -2,14 +2,14 @@ use std::sync::Arc;
 
 use kuva::plot::{ColorMap, LineStyle, MarkerShape};
 
-/// How a line is broken.
+/// The dashes of a line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Dash {
-    /// In one piece.
+    /// Continuous.
     Solid,
-    /// In short pieces.
+    /// Dashed.
     Dashed,
-    /// In dots.
+    /// Dotted.
     Dotted,
 }
 
@@ -23,14 +23,14 @@ impl From<Dash> for LineStyle {
     }
 }
 
-/// How a line looks.
+/// The style of a line.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stroke {
-    /// As in HTML.
+    /// In HTML notation.
     pub color: &'static str,
-    /// Pixels.
+    /// Width in pixels.
     pub width: f64,
-    /// In how many pieces.
+    /// Its dashes.
     pub dash: Dash,
 }
 
@@ -39,15 +39,15 @@ pub struct Stroke {
 pub enum Mark {
     /// A disc.
     Circle,
-    /// A square with level sides.
+    /// A square with horizontal and vertical sides.
     Square,
     /// A triangle that points upwards.
     Up,
     /// A triangle that points downwards.
     Down,
-    /// Two lines across each other.
+    /// Two crossing lines.
     Cross,
-    /// With five points.
+    /// A star with five points.
     Star,
 }
 
@@ -64,11 +64,11 @@ impl From<Mark> for MarkerShape {
     }
 }
 
-/// From the lowest height to the highest, evenly spaced.
+/// Colours from the lowest height to the highest, evenly spaced.
 const HEIGHTS: [[f64; 3]; 4] =
     [[92.0, 142.0, 214.0], [121.0, 196.0, 203.0], [190.0, 226.0, 162.0], [255.0, 240.0, 150.0]];
 
-/// The colour of a height, 0 to 1: from blue by green to yellow, the higher the lighter, on all of which black can be seen.
+/// The colour of a height, 0 to 1: from blue through green to yellow, lighter with height. Black is legible on all of them.
 pub(crate) fn height(height: f64) -> [u8; 3] {
     let along = height.clamp(0.0, 1.0) * (HEIGHTS.len() - 1) as f64;
     let below = (along as usize).min(HEIGHTS.len() - 2);
@@ -81,7 +81,7 @@ pub(crate) fn heights() -> ColorMap {
     color_map(height)
 }
 
-/// The same, darker: dots are small, and on white.
+/// The same, darker, because dots are small and on white.
 pub(crate) fn heights_of_dots() -> ColorMap {
     color_map(|at| height(at).map(|part| (u16::from(part) * 7 / 10) as u8))
 }

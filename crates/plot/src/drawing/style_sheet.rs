@@ -1,25 +1,25 @@
-//! Colours and widths of a drawing in a style sheet: what many elements share is written once, and what changes in the
-//! dark has its colours of the dark next to those of the light.
+//! A style sheet for the colours and widths of a drawing. Styles that many elements share are written once, and colours
+//! that change in dark mode are next to their counterparts.
 
 use std::collections::HashMap;
 use std::fmt::Write as _;
 
 use crate::drawing::theme::{INK, dark, hex};
 
-/// Attributes that a style sheet may hold as they stand.
+/// Attributes that can move to a style sheet unchanged.
 const STYLES: [&str; 6] = ["fill", "stroke", "stroke-width", "opacity", "fill-opacity", "stroke-opacity"];
 
-/// From so many elements with the same style on, a class is shorter.
+/// Number of elements with the same style from which a class is shorter.
 const WORTH: usize = 8;
 
-/// Of pictures behind lines and words: light, so that black can be seen on them.
+/// Class of pictures behind lines and words: light, so that black is legible on them.
 pub(crate) const BACKDROP: &str = "class=\"backdrop\"";
 
-/// What of it is left in the dark, where those lines and words are light.
+/// Opacity of these in dark mode, where lines and words are light.
 const DIMMED: f64 = 0.5;
 
-/// The drawing with a class for every style that recurs or changes in the dark, and a style sheet at its beginning. In the
-/// light and on paper it looks the same; a viewer without style sheets of the dark draws it as in the light.
+/// The drawing with a class for every style that recurs or changes in dark mode, and a style sheet at its beginning. In
+/// light mode and in print it looks the same. A viewer that does not support dark mode draws it as in light mode.
 pub(crate) fn with_style_sheet(svg: &str) -> String {
     let mut count: HashMap<Style, usize> = HashMap::new();
     for (_, element) in elements(svg) {
@@ -62,7 +62,7 @@ pub(crate) fn with_style_sheet(svg: &str) -> String {
     drawing
 }
 
-/// Names of attributes and their values.
+/// Attribute names and values.
 type Style = Vec<(&'static str, String)>;
 
 fn rules(style: &Style) -> String {
@@ -70,19 +70,19 @@ fn rules(style: &Style) -> String {
     style.iter().map(rule).collect()
 }
 
-/// What of a style is another in the dark, if anything.
+/// The part of a style that changes in dark mode, if any.
 fn in_the_dark(style: &Style) -> Option<Style> {
     let changed: Style = style.iter().filter_map(|(name, value)| Some((*name, dark(value)?))).collect();
     (!changed.is_empty()).then_some(changed)
 }
 
-/// Every tag, after the words before it.
+/// All tags, each with the text before it.
 fn elements(svg: &str) -> impl Iterator<Item = (&str, &str)> {
     svg.split_inclusive('>').map(|part| part.split_at(part.find('<').unwrap_or(part.len())))
 }
 
-/// A tag without what a style sheet may say, and that; nothing for a tag that has a style or a class of its own, or
-/// nothing to say.
+/// Splits a tag into the attributes that cannot move to a style sheet, and those that can. `None` for a tag with a style
+/// or class attribute, or without movable attributes.
 fn without_style(tag: &str) -> Option<(String, Style)> {
     let (mut plain, mut style) = (String::new(), Style::new());
     let mut pieces = tag.split('"');

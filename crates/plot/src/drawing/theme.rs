@@ -1,20 +1,20 @@
-//! The colours of a drawing on dark paper. Greys and tints change places with their opposites, saturated colours stay what
-//! they are, but for dark ones, which become lighter.
+//! The colours of a drawing in dark mode. Greys and tints are inverted. Saturated colours do not change, except that dark
+//! ones become lighter.
 
-/// Paper and ink in the dark, those of the pages.
+/// Background and foreground in dark mode, as on the pages.
 const PAPER: [f64; 3] = [27.0, 31.0, 35.0];
 pub(crate) const INK: [f64; 3] = [228.0, 231.0, 234.0];
 
-/// Largest minus smallest part, up to which a colour is a grey or a tint; those of heights have more.
+/// Largest difference between the components of a grey or a tint; the colours of heights have larger ones.
 const TINT: f64 = 44.0;
 
-/// Contrast with the paper that words need, which have the colours of lines (WCAG 2, 1.4.3).
+/// Minimum contrast with the background. It is that required for text, which shares the colours of lines (WCAG 2, 1.4.3).
 const CONTRAST: f64 = 4.5;
 
-/// Steps from a colour to white.
+/// Number of steps from a colour to white.
 const STEPS: u32 = 32;
 
-/// A colour's counterpart on dark paper, `#rrggbb`; none where it stays, or is none.
+/// A colour's counterpart in dark mode, `#rrggbb`; `None` if it does not change or is not a colour.
 pub(crate) fn dark(color: &str) -> Option<String> {
     let color = parts(color)?;
     let (least, most) = (color.iter().copied().fold(255.0, f64::min), color.iter().copied().fold(0.0, f64::max));
@@ -22,7 +22,7 @@ pub(crate) fn dark(color: &str) -> Option<String> {
     (dark != color).then(|| hex(dark))
 }
 
-/// A colour as the drawing writes it.
+/// A colour in the notation of the drawing.
 pub(crate) fn hex(color: [f64; 3]) -> String {
     let [red, green, blue] = color.map(|part| part.round().clamp(0.0, 255.0) as u8);
     format!("#{red:02x}{green:02x}{blue:02x}")
@@ -39,19 +39,19 @@ fn parts(color: &str) -> Option<[f64; 3]> {
     Some([number >> 16, number >> 8 & 255, number & 255].map(f64::from))
 }
 
-/// As far from paper as this grey is from white, with the same tint.
+/// Inverts a colour: it is as far from the dark background as this grey is from white, with the same tint.
 fn opposite(color: [f64; 3], grey: f64) -> [f64; 3] {
     std::array::from_fn(|i| INK[i] + (PAPER[i] - INK[i]) * grey / 255.0 + color[i] - grey)
 }
 
-/// Mixed with as little white as makes it readable.
+/// Mixes a colour with as little white as is necessary for legibility.
 fn lighter(color: [f64; 3]) -> [f64; 3] {
     let readable = |color: &[f64; 3]| (luminance(*color) + 0.05) / (luminance(PAPER) + 0.05) >= CONTRAST;
     let mixed = |step: u32| color.map(|part| (part + (255.0 - part) * f64::from(step) / f64::from(STEPS)).round());
     (0..=STEPS).map(mixed).find(readable).unwrap_or(color)
 }
 
-/// Relative luminance of WCAG 2.
+/// Relative luminance according to WCAG 2.
 fn luminance(color: [f64; 3]) -> f64 {
     let linear = color
         .map(|part| part / 255.0)

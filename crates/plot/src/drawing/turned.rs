@@ -1,4 +1,4 @@
-//! Words that are turned upwards, as pixels: the plotting crate samples them anew as it turns them, which leaves them jagged.
+//! Vertical text as pixels. The plotting crate resamples text when it rotates it, which makes it jagged.
 
 use kuva::backend::raster::RasterBackend;
 use kuva::render::color::Color;
@@ -7,10 +7,10 @@ use kuva::render::render::{Primitive, Scene, TextAnchor};
 use crate::drawing::elements::{rectangle, words};
 use crate::drawing::raster::DOTS;
 
-/// Degrees by which the words of an upright axis are turned.
+/// Rotation of the text along a vertical axis, degrees.
 const UPWARDS: f64 = -90.0;
 
-/// An element as pixels need it: words that go up are drawn level, and their dots then turned, which loses nothing.
+/// An element, prepared for pixels. Vertical text is drawn horizontally, and its dots are rotated, which is lossless.
 pub(crate) fn drawn(element: Primitive, font_family: Option<&String>) -> Vec<Primitive> {
     let upright = |turn: &f64| (turn - UPWARDS).abs() < 1e-9;
     match &element {
@@ -25,7 +25,8 @@ pub(crate) fn drawn(element: Primitive, font_family: Option<&String>) -> Vec<Pri
     }
 }
 
-/// How much of each dot level words cover, as (right, down) from the middle of their foot, dots.
+/// Coverage of each dot by horizontal text, with the dot's position (right, down) relative to the centre of the baseline, in
+/// dots.
 fn dots(content: &str, size: u32, font_family: Option<&String>) -> Option<Vec<(f64, f64, f64)>> {
     let size_px = f64::from(size);
     let (width, foot) = ((content.chars().count() as f64 * size_px).ceil() + 20.0, (1.5 * size_px).ceil());
@@ -40,7 +41,7 @@ fn dots(content: &str, size: u32, font_family: Option<&String>) -> Option<Vec<(f
     let frame = reader.next_frame(&mut picture).ok()?;
     let scale = DOTS as f64;
     let dot = |(at, pixel): (usize, &[u8])| {
-        // Black words on white, or on nothing.
+        // Black text on white, or on a transparent background.
         let share = f64::from(pixel[3]) / 255.0 * (1.0 - f64::from(pixel[0]) / 255.0);
         let [column, row] = [at % frame.width as usize, at / frame.width as usize].map(|place| place as f64);
         (share > 0.0).then_some((column - (width / 2.0 * scale).round(), row - foot * scale, share))
@@ -48,7 +49,7 @@ fn dots(content: &str, size: u32, font_family: Option<&String>) -> Option<Vec<(f
     Some(picture.chunks_exact(4).enumerate().filter_map(dot).collect())
 }
 
-/// The dots, turned about the middle of their foot.
+/// The dots, rotated about the centre of the baseline.
 fn areas(dots: &[(f64, f64, f64)], (x, y): (f64, f64), color: &Color) -> Vec<Primitive> {
     let side = 1.0 / DOTS as f64;
     let [x, y] = [x, y].map(|place| (place / side).round() * side);

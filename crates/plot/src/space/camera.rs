@@ -1,21 +1,21 @@
 use nalgebra::{Matrix3, RowVector3};
 
-/// From where a scene is looked at, far away: parallel lines stay parallel.
+/// The direction from which a scene is viewed. The projection is orthographic: parallel lines stay parallel.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Camera {
-    /// Where the viewer stands, turned about z from x, degrees.
+    /// Azimuth of the viewer, about z from x, degrees.
     pub azimuth: f64,
-    /// How far above the plane z = 0 the viewer is, degrees.
+    /// Elevation of the viewer above the plane z = 0, degrees.
     pub elevation: f64,
 }
 
 impl Camera {
-    /// Looking along x: y to the left, z up.
+    /// View along x: y to the left, z up.
     pub const BEHIND: Camera = Camera { azimuth: 180.0, elevation: 0.0 };
-    /// Looking down: y to the left, x up.
+    /// View down: y to the left, x up.
     pub const ABOVE: Camera = Camera { azimuth: 180.0, elevation: 90.0 };
 
-    /// Rows: what is to the right, up, and towards the viewer; orthonormal.
+    /// Rows: directions to the right, up, and towards the viewer; orthonormal.
     pub(super) fn axes(&self) -> Matrix3<f64> {
         let (s, c) = self.azimuth.to_radians().sin_cos();
         let (rise, run) = self.elevation.to_radians().sin_cos();
@@ -60,7 +60,7 @@ mod tests {
         let Camera { azimuth, elevation } = Camera::ABOVE;
         assert!(near(seen(azimuth, elevation, Vector3::y()), -Vector3::x()));
         assert!(near(seen(azimuth, elevation, Vector3::x()), Vector3::y()));
-        // Who looks along −x has y at the right.
+        // Viewed along −x, y is to the right.
         assert!(near(seen(0.0, 0.0, Vector3::y()), Vector3::x()));
     }
 }

@@ -1,4 +1,5 @@
-//! Bodies as pixels: each sample of the panel shows what its line of sight meets first, and what that is seen through.
+//! Renders bodies as pixels: each sample of the panel shows the first body on its line of sight, and the transparent
+//! bodies before it.
 
 use nalgebra::{Point2, Vector3};
 
@@ -8,7 +9,7 @@ use super::solid::{Hit, Solid};
 use super::view::View;
 use crate::drawing::raster::{DOTS, Raster};
 
-/// A body and how it looks.
+/// A body and its paint.
 #[derive(Debug, Clone)]
 pub(super) struct Body {
     pub(super) solid: Solid,
@@ -20,16 +21,16 @@ const FINE: usize = 2;
 const SAMPLES: usize = FINE * DOTS;
 /// Width of outlines, pixels.
 const INK: f64 = 0.9;
-/// Neighbours whose normals have a smaller product are on different faces.
+/// Neighbours are on different faces if the dot product of their normals is smaller.
 const SAME_FACE: f64 = 0.7;
 
-/// All bodies of the items.
+/// The bodies among the items.
 pub(super) fn bodies(items: &[Item], view: &View) -> Vec<Body> {
     let body = |item: &Item| Some(Body { tint: item.paint()?.into(), solid: Solid::of(item, view)? });
     items.iter().filter_map(body).collect()
 }
 
-/// A picture of the bodies on a panel of this size, pixels; none where there are no bodies.
+/// An image of the bodies on a panel of this size, pixels; `None` without bodies.
 pub(super) fn raster(bodies: &[Body], size: (f64, f64)) -> Option<Raster> {
     let mut film = Film::over(Window::around(bodies, size)?);
     let (opaque, veils): (Vec<&Body>, Vec<&Body>) = bodies.iter().partition(|body| body.tint.opacity >= 1.0);
@@ -54,7 +55,7 @@ struct Window {
 }
 
 impl Window {
-    /// What holds all bodies with a pixel around them, in whole pixels.
+    /// The part that contains all bodies with a margin of one pixel, in whole pixels.
     fn around(bodies: &[Body], size: (f64, f64)) -> Option<Window> {
         let bounds = bodies.iter().map(|body| body.solid.bounds());
         let [low, high] = bounds.reduce(|[low, high], [a, b]| [low.inf(&a), high.sup(&b)])?;
@@ -65,13 +66,13 @@ impl Window {
         (width > 0 && height > 0).then_some(Window { corner: low, width, height })
     }
 
-    /// The middle of a sample on the panel.
+    /// The centre of a sample on the panel.
     fn place(&self, column: usize, row: usize) -> Point2<f64> {
         let pixels = |sample: usize| (sample as f64 + 0.5) / SAMPLES as f64;
         self.corner + nalgebra::Vector2::new(pixels(column), pixels(row))
     }
 
-    /// The samples that a body takes: which, how near, in what colour. Its outline can always be seen.
+    /// The samples that a body covers: index, depth and colour. Its outline is always opaque.
     fn samples_of(&self, body: &Body) -> Vec<(usize, f32, [f32; 4])> {
         let part = self.part(body);
         let place = |at: usize| self.place(part.columns.start + at % part.width(), part.rows.start + at / part.width());
@@ -91,7 +92,7 @@ impl Window {
         hits.iter().enumerate().filter_map(sample).collect()
     }
 
-    /// The columns and rows that a body may touch, and one more on each side, so that its outline is seen as one.
+    /// The columns and rows that a body may cover, with a margin of one sample for its outline.
     fn part(&self, body: &Body) -> Part {
         let [low, high] = body.solid.bounds().map(|end| (end - self.corner) * SAMPLES as f64);
         let range = |from: f64, to: f64, most: usize| {
@@ -114,7 +115,7 @@ impl Part {
     }
 }
 
-/// Which of the samples of a body are on its outline, or where two of its faces meet.
+/// Which samples of a body are on its outline or on an edge between two faces.
 fn inked(hits: &[Option<Hit>], width: usize) -> Vec<bool> {
     let mut inked = vec![false; hits.len()];
     let outline = INK * SAMPLES as f64;
@@ -142,14 +143,14 @@ fn inked(hits: &[Option<Hit>], width: usize) -> Vec<bool> {
     inked
 }
 
-/// Left, right, above and below, where there are any.
+/// Left, right, upper and lower neighbour, as far as they exist.
 fn neighbours(at: usize, width: usize, len: usize) -> impl Iterator<Item = usize> {
     let (left, right) = ((!at.is_multiple_of(width)).then(|| at - 1), (at % width + 1 < width).then_some(at + 1));
     let (above, below) = (at.checked_sub(width), (at + width < len).then_some(at + width));
     [left, right, above, below].into_iter().flatten()
 }
 
-/// The samples of a window: what is seen, red, green, blue and how much of it there is, and how near that is.
+/// The samples of a window: colour (red, green, blue, opacity) and depth.
 struct Film {
     window: Window,
     colors: Vec<[f32; 4]>,
@@ -162,7 +163,7 @@ impl Film {
         Film { window, colors: vec![[0.0; 4]; n], depths: vec![f32::NEG_INFINITY; n] }
     }
 
-    /// Lays what can be seen through over what is behind it, the farther first.
+    /// Blends transparent samples over those behind them, the farthest first.
     fn veil(&mut self, bodies: &[&Body]) {
         let mut veils: Vec<(usize, f32, [f32; 4])> = vec![];
         for body in bodies {
@@ -177,7 +178,7 @@ impl Film {
         }
     }
 
-    /// The mean of the samples of each dot.
+    /// The mean over the samples of each dot.
     fn raster(&self) -> Raster {
         let (width, height) = (self.window.width / FINE, self.window.height / FINE);
         let dot = |at: usize| {
@@ -198,8 +199,8 @@ impl Film {
     }
 }
 
-/// The colour of something small at a place of the panel and so near: nothing where a body hides it, and tinted by what
-/// it is seen through.
+/// The colour of a small object at a position and depth of the panel: `None` if an opaque body hides it, otherwise
+/// tinted by the transparent bodies before it.
 pub(super) fn seen(color: Rgb, at: &Point2<f64>, depth: f64, bodies: &[Body]) -> Option<Rgb> {
     let mut veils: Vec<(f64, &Tint)> = vec![];
     for Body { solid, tint } in bodies {

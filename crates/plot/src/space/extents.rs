@@ -1,4 +1,4 @@
-//! What must be on the panel for an item to be there as a whole.
+//! The extents that must be on the panel for an item to be completely visible.
 
 use nalgebra::Point3;
 
@@ -7,7 +7,7 @@ use super::view::{Extent, Room, corners};
 use super::{Camera, Item, legend, stroke};
 
 impl Item {
-    /// What must be on the panel for all of it to be there.
+    /// The points, with margins, that must be on the panel for the whole item to be visible.
     pub(super) fn extents(&self, camera: &Camera) -> Vec<Extent> {
         let around = |radius| Room { left: radius, right: radius, up: radius, down: radius };
         let bare = |points: &[Point3<f64>]| points.iter().copied().map(Extent::bare).collect();
@@ -34,7 +34,7 @@ fn with_room(points: &[Point3<f64>], room: Room) -> Vec<Extent> {
     points.iter().map(|&at| Extent { at, room }).collect()
 }
 
-/// Points right, left, above and below that hold a ball in between.
+/// Points to the right, left, above and below that enclose a ball.
 fn square(centre: &Point3<f64>, radius: f64, camera: &Camera) -> [Point3<f64>; 4] {
     let axes = camera.axes();
     let [right, up] = [0, 1].map(|row| axes.row(row).transpose() * radius);

@@ -1,4 +1,4 @@
-//! A box of axes behind a scene, with ticks and labels where nothing hides them.
+//! A box of axes behind a scene, with ticks and labels that remain visible.
 
 use kuva::render::color::Color;
 use kuva::render::render::{Primitive, Scene, TextAnchor};
@@ -17,29 +17,29 @@ pub struct Frame {
     pub lowest: Point3<f64>,
     /// The corner with the largest coordinates.
     pub highest: Point3<f64>,
-    /// With units, x y z.
+    /// Labels of x, y and z, with units.
     pub labels: [String; 3],
 }
 
-/// Pixels of a tick, from the edge to its number's middle, and to the label's middle.
+/// In pixels: length of a tick, and distances from the edge to the centre of its number and of the label.
 const TICK: f64 = 5.0;
 const NUMBER: f64 = 17.0;
 const LABEL: f64 = 40.0;
-/// From a number's middle to the nearest corner of a label.
+/// Distance from a number's centre to the closest corner of a label.
 const CLEAR: f64 = 14.0;
-/// A label is never further from its axis, pixels.
+/// Largest distance of a label from its axis, pixels.
 const FURTHEST: f64 = 60.0;
-/// Labels of axes that are steeper are turned: sine of the angle.
+/// Labels of steeper axes are rotated: sine of the angle.
 const SLANTED: f64 = 0.8;
-/// From a word's middle to its foot.
+/// Distance from the centre of a word to its baseline.
 const DOWN: f64 = 0.36 * WORDS as f64;
-/// An axis seen shorter than this has no ticks, pixels.
+/// An axis that appears shorter than this has no ticks, pixels.
 const SHORTEST: f64 = 40.0;
-/// About so many pixels from tick to tick.
+/// Approximate distance between ticks, pixels.
 const APART: f64 = 45.0;
 
 impl Frame {
-    /// What must be on the panel for it to be readable.
+    /// The extents that must be on the panel for legible axes.
     pub(super) fn extents(&self) -> Vec<Extent> {
         let widest = self.labels.iter().map(|label| legend::width(label, WORDS)).fold(0.0, f64::max);
         let room = label_distance(widest, SLANTED) + 8.0;
@@ -57,7 +57,7 @@ impl Frame {
         }
     }
 
-    /// The face across an axis that is behind everything, with lines at the ticks of the two other axes.
+    /// The face across an axis behind the scene, with lines at the ticks of the other two axes.
     fn draw_back(&self, axis: usize, view: &View, scene: &mut Scene) {
         let towards = view.direction(&Vector3::ith(axis, 1.0)).z;
         if towards.abs() < 1e-9 {
@@ -85,7 +85,7 @@ impl Frame {
         scene.add(polyline(&[a, b, c, d, a], Color::from("#a8a8a8"), 0.8));
     }
 
-    /// One axis: the edge of the box that is lowest on the panel, or for an upright axis leftmost.
+    /// One axis: the edge of the box that is lowest on the panel, or leftmost for a vertical axis.
     fn draw_axis(&self, axis: usize, view: &View, scene: &mut Scene) {
         let Some((outward, [start, end])) = self.edge(axis, view) else { return };
         let at = |value: f64| {
@@ -132,14 +132,14 @@ impl Frame {
     }
 }
 
-/// How far a label's middle is from its axis: if the axis is slanted, a long one would lie on the numbers of the ticks. Not so far that the
-/// box becomes small.
+/// Distance between the centre of a label and its axis. Near a slanted axis a long label would overlap the numbers of the ticks. The
+/// distance is limited, so that the box does not become small.
 fn label_distance(width: f64, slant: f64) -> f64 {
     let nearer = 0.5 * width * slant;
     if NUMBER + nearer <= LABEL { LABEL } else { (NUMBER + CLEAR + nearer).min(FURTHEST) }
 }
 
-/// A word with its middle here, or next to the box its nearer end.
+/// A word centred here, or beside the box with its closer end here.
 fn tick_label(at: Point2<f64>, outward: Vector2<f64>, word: &str) -> Primitive {
     let (anchor, back) = match outward.x {
         x if x < -0.8 => (TextAnchor::End, 8.0),

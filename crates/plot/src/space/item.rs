@@ -2,125 +2,125 @@ use nalgebra::{IsometryMatrix3, Point3, Vector3};
 
 use crate::Stroke;
 
-/// How a body looks.
+/// The appearance of a body.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Paint {
-    /// Where it is fully lit; as in HTML, `#rrggbb`.
+    /// Colour under full light, in HTML notation, `#rrggbb`.
     pub color: &'static str,
-    /// From 0 to 1; what is not opaque is not shaded.
+    /// From 0 to 1; transparent bodies are not shaded.
     pub opacity: f64,
 }
 
 impl Paint {
-    /// Nothing behind it can be seen.
+    /// A paint that hides everything behind it.
     pub fn opaque(color: &'static str) -> Self {
         Paint { color, opacity: 1.0 }
     }
 }
 
-/// One thing in space; lengths in the units of the scene, widths and radii of strokes and dots in pixels.
+/// An item of the scene. Lengths are in the units of the scene; widths and radii of strokes and dots are in pixels.
 #[derive(Debug, Clone)]
 pub enum Item {
-    /// A line through points. A label puts it in the legend.
+    /// A line through points. A label adds it to the legend.
     Path {
-        /// From its start to its end.
+        /// From start to end.
         points: Vec<Point3<f64>>,
-        /// How it looks.
+        /// Its style.
         stroke: Stroke,
-        /// In the legend.
+        /// Name in the legend.
         label: Option<String>,
     },
-    /// A straight line with a head at its end.
+    /// A straight line with an arrowhead.
     Arrow {
-        /// Its foot.
+        /// Its start.
         from: Point3<f64>,
         /// Its tip.
         to: Point3<f64>,
-        /// How its shaft looks; the head is as broad as suits it.
+        /// Style of its shaft, which determines the size of the head.
         stroke: Stroke,
     },
-    /// Dots with this radius.
+    /// Dots.
     Dots {
-        /// Their middles.
+        /// Their centres.
         points: Vec<Point3<f64>>,
-        /// As in HTML.
+        /// In HTML notation.
         color: &'static str,
-        /// Pixels.
+        /// Radius in pixels.
         radius: f64,
     },
-    /// A flat convex area: its corners in order.
+    /// A flat convex polygon.
     Plate {
-        /// In order.
+        /// Corners in order.
         corners: Vec<Point3<f64>>,
-        /// How it looks.
+        /// Its appearance.
         paint: Paint,
     },
-    /// All that is near to a point.
+    /// A ball.
     Ball {
-        /// The point.
+        /// Its centre.
         centre: Point3<f64>,
-        /// How near.
+        /// Its radius.
         radius: f64,
-        /// How it looks.
+        /// Its appearance.
         paint: Paint,
     },
-    /// A cylinder between two points with a half ball at each.
+    /// A cylinder between two points with a hemisphere at each.
     Capsule {
-        /// The middles of the half balls.
+        /// Centres of the hemispheres.
         ends: [Point3<f64>; 2],
-        /// Of the half balls.
+        /// Radius of the hemispheres.
         radius: f64,
-        /// How it looks.
+        /// Its appearance.
         paint: Paint,
     },
     /// A cylinder between two points.
     Cylinder {
-        /// The middles of its end faces.
+        /// Centres of its end faces.
         ends: [Point3<f64>; 2],
-        /// Of its end faces.
+        /// Radius of its end faces.
         radius: f64,
-        /// How it looks.
+        /// Its appearance.
         paint: Paint,
     },
-    /// A box about the origin of its pose: whole lengths along x, y, z.
+    /// A box centred at the origin of its pose.
     Block {
-        /// From its own axes to the scene's.
+        /// From the box's axes to the scene's.
         pose: IsometryMatrix3<f64>,
-        /// Whole lengths.
+        /// Full lengths along x, y, z.
         size: Vector3<f64>,
-        /// How it looks.
+        /// Its appearance.
         paint: Paint,
     },
-    /// A word, this many pixels right of and below a point, with a line to the point where it is far; its middle is
-    /// there where it is neither to the right nor to the left.
+    /// A text shifted from a point, with a line to the point if it is far away. The text is centred if it is shifted
+    /// neither to the right nor to the left.
     Note {
         /// The point.
         at: Point3<f64>,
-        /// The word.
+        /// The text.
         text: String,
-        /// Pixels to the right and down.
+        /// Shift to the right and down, pixels.
         shift: (f64, f64),
-        /// As in HTML.
+        /// In HTML notation.
         color: &'static str,
     },
-    /// A short word in a disc.
+    /// A short text in a disc.
     Mark {
-        /// The middle of the disc.
+        /// The centre of the disc.
         at: Point3<f64>,
-        /// The word.
+        /// The text.
         text: String,
-        /// Of the disc; as in HTML.
+        /// Colour of the disc, in HTML notation.
         color: &'static str,
     },
 }
 
-/// Size of words, pixels.
+/// Font size, pixels.
 pub(super) const WORDS: u32 = 12;
-/// Radius of the disc of a mark.
+/// Radius of the disc of a mark, pixels.
 pub(super) const DISC: f64 = 9.5;
 
 impl Item {
-    /// How it looks, if it is a body.
+    /// The paint of a body; `None` for other items.
     pub(super) fn paint(&self) -> Option<Paint> {
         match self {
             Item::Plate { paint, .. }

@@ -1,4 +1,4 @@
-//! Names of lines, below the scene; and words on the panel.
+//! Legend below the scene, and text on the panel.
 
 use kuva::render::color::Color;
 use kuva::render::render::{Primitive, Scene, TextAnchor};
@@ -8,17 +8,17 @@ use super::item::WORDS;
 use super::{Item, MARGIN, stroke};
 use crate::Stroke;
 
-/// Pixels of a row.
+/// Height of a row, pixels.
 const ROW: f64 = 20.0;
-/// Pixels of the line before a name.
+/// Length of the line before a name, pixels.
 const SAMPLE: f64 = 30.0;
-/// Pixels between names.
+/// Distance between names, pixels.
 const APART: f64 = 18.0;
 
-/// What is named.
+/// Names with their line styles.
 pub(super) type Names<'i> = Vec<(&'i str, Stroke)>;
 
-/// The names of lines, each once.
+/// The names of lines, without duplicates.
 pub(super) fn names<'i>(items: impl Iterator<Item = &'i Item>) -> Names<'i> {
     let mut names: Names<'i> = vec![];
     for item in items {
@@ -31,12 +31,12 @@ pub(super) fn names<'i>(items: impl Iterator<Item = &'i Item>) -> Names<'i> {
     names
 }
 
-/// Pixels that the names take below the scene.
+/// Height of the legend below the scene, pixels.
 pub(super) fn height(names: &Names<'_>, width: f64) -> f64 {
     rows(names, width).len() as f64 * ROW
 }
 
-/// Draws them in the middle, at the lower edge.
+/// Draws the legend centred at the lower edge.
 pub(super) fn draw(names: &Names<'_>, (width, height): (f64, f64), scene: &mut Scene) {
     let rows = rows(names, width);
     let top = height - MARGIN - rows.len() as f64 * ROW;
@@ -53,7 +53,7 @@ pub(super) fn draw(names: &Names<'_>, (width, height): (f64, f64), scene: &mut S
     }
 }
 
-/// As many names in a row as there is room for.
+/// Splits the names into rows as the width permits.
 fn rows<'n, 'i>(names: &'n Names<'i>, width: f64) -> Vec<&'n [(&'i str, Stroke)]> {
     let widest = names.iter().map(|(name, _)| extent(name)).fold(1.0, f64::max);
     let columns = ((width - 2.0 * MARGIN + APART) / widest).floor().max(1.0) as usize;
@@ -64,12 +64,12 @@ fn extent(name: &str) -> f64 {
     SAMPLE + 5.0 + width(name, WORDS) + APART
 }
 
-/// Pixels of a word, rather more than less.
+/// Estimated width of a text in pixels, rather too large than too small.
 pub(super) fn width(text: &str, size: u32) -> f64 {
     0.62 * f64::from(size) * text.chars().count() as f64
 }
 
-/// A word, turned by so many degrees.
+/// A text, rotated by this many degrees.
 pub(super) fn text((x, y): (f64, f64), text: &str, anchor: TextAnchor, color: &str, rotate: Option<f64>) -> Primitive {
     let (content, color) = (text.to_owned(), Some(Color::from(color)));
     Primitive::Text { x, y, content, size: WORDS, anchor, rotate, bold: false, color }

@@ -1,8 +1,8 @@
-//! Things in space: bodies as pixels under lines and words, with exact hidden surfaces.
+//! 3-D scenes: bodies as pixels under lines and words, with exact hidden surfaces.
 //!
-//! - [`Camera`], `view`: from where, and how that becomes pixels.
-//! - [`Item`]: what there is. `solid`, `cast`: its bodies, line of sight by line of sight; `stroke`: its lines and dots.
-//! - [`Frame`], `legend`, `words`: axes with ticks, names of lines, words.
+//! - [`Camera`], `view`: the point of view, and the projection to pixels.
+//! - [`Item`]: the contents. `solid`, `cast`: ray casting of bodies; `stroke`: lines and dots.
+//! - [`Frame`], `legend`, `words`: axes with ticks, names of lines, text.
 
 mod camera;
 mod cast;
@@ -28,30 +28,31 @@ use crate::drawing::raster::Raster;
 use crate::{Panel, Sketch};
 use view::{Area, Extent, View};
 
-/// Pixels kept free at the edges.
+/// Margin at the edges, pixels.
 const MARGIN: f64 = 10.0;
-/// Pixels for the title, where there is one.
+/// Height of the title, if there is one, pixels.
 const TITLE: f64 = 28.0;
 
-/// As in the other panels.
+/// The same font as in the other panels.
 const FONT: &str = "DejaVu Sans, Verdana, Liberation Sans, Arial, sans-serif";
 
-/// A scene in space, seen from far away.
+/// A 3-D scene in orthographic projection.
 #[derive(Debug, Clone)]
 pub struct Space {
-    /// Above it.
+    /// Title above the panel.
     pub title: String,
-    /// From where it is seen.
+    /// The viewing direction.
     pub camera: Camera,
-    /// What hides and is hidden.
+    /// Items that hide each other.
     pub items: Vec<Item>,
-    /// What is drawn over all that: bodies, then lines and dots in this order.
+    /// Items drawn on top: bodies, then lines and dots in this order.
     pub over: Vec<Item>,
-    /// A box of axes behind it all.
+    /// A box of axes behind the scene.
     pub frame: Option<Frame>,
-    /// Lowest and highest corner of what is fitted to the panel, so that several have one scale; without it all items.
+    /// Lowest and highest corner of the region that is fitted to the panel, so that several panels have the same scale;
+    /// by default all items are fitted.
     pub extent: Option<[Point3<f64>; 2]>,
-    /// Pixels.
+    /// Size in pixels.
     pub size: (f64, f64),
 }
 
@@ -77,7 +78,7 @@ impl Panel for Space {
 }
 
 impl Space {
-    /// Where things come to lie on the panel.
+    /// The projection onto the panel.
     fn view(&self) -> View {
         let items = || self.items.iter().chain(&self.over);
         let mut extents: Vec<Extent> = match self.extent {
@@ -91,7 +92,7 @@ impl Space {
         View::fit(&self.camera, &extents, area)
     }
 
-    /// Draws bodies, then what they do not hide, then what nothing hides, then words.
+    /// Draws bodies, then items that they may hide, then items on top, then text.
     fn draw_items(&self, view: &View, sketch: &mut Sketch) {
         for (items, hidden_by) in [(&self.items, &self.items[..]), (&self.over, &[][..])] {
             let raster: Option<Raster> = cast::raster(&cast::bodies(items, view), self.size);

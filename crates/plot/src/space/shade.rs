@@ -1,4 +1,4 @@
-//! Light and shadow: light falls from the left, from above and from behind the viewer.
+//! Shading: light comes from the left, from above and from behind the viewer.
 
 use kuva::render::color::Color;
 use nalgebra::Vector3;
@@ -8,7 +8,7 @@ use super::Paint;
 /// Red, green and blue, from 0 to 255.
 pub(super) type Rgb = [f64; 3];
 
-/// A [`Paint`] whose colour has been read.
+/// A [`Paint`] with a parsed colour.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Tint {
     color: Rgb,
@@ -21,34 +21,34 @@ impl From<Paint> for Tint {
     }
 }
 
-/// What is in full shadow keeps this share of its lightness.
+/// Brightness in full shadow, as a share of full brightness.
 const SHADOW: f64 = 0.66;
 
-/// Towards the light, on the panel: right, down, towards the viewer.
+/// Direction towards the light, on the panel: right, down, towards the viewer.
 pub(super) fn light() -> Vector3<f64> {
     Vector3::new(-0.5, -0.62, 0.6).normalize()
 }
 
-/// The colour of a body where its surface has this outward normal, of length 1; what is not opaque is not shaded.
+/// The colour of a body where its surface has this outward unit normal; transparent bodies are not shaded.
 pub(super) fn seen(tint: &Tint, normal: &Vector3<f64>) -> Rgb {
     let lit = if tint.opacity < 1.0 { 1.0 } else { f64::midpoint(normal.dot(&light()), 1.0) };
     tint.color.map(|part| part * (SHADOW + (1.0 - SHADOW) * lit))
 }
 
-/// The colour of outlines: dark, or where things behind can be seen less so.
+/// The colour of outlines: dark, or less dark for transparent bodies.
 pub(super) fn ink(tint: &Tint) -> Rgb {
     tint.color.map(|part| part * if tint.opacity < 1.0 { 0.6 } else { 0.3 })
 }
 
-/// Black or white, whichever can be read on a colour.
+/// Black or white, whichever is legible on a colour.
 pub(super) fn word_on(color: &str) -> &'static str {
     let [red, green, blue] = rgb(color);
-    // As light as it looks.
+    // Perceived lightness.
     let lightness = 0.3 * red + 0.59 * green + 0.11 * blue;
     if lightness > 140.0 { "#000000" } else { "#ffffff" }
 }
 
-/// The parts of a colour as in HTML, `#rrggbb`; black where it is another.
+/// The components of a colour in HTML notation, `#rrggbb`; black if it has another form.
 pub(super) fn rgb(color: &str) -> Rgb {
     match Color::from(color) {
         Color::Rgb(red, green, blue) => [red, green, blue].map(f64::from),
@@ -56,7 +56,7 @@ pub(super) fn rgb(color: &str) -> Rgb {
     }
 }
 
-/// As the plotting crate has it.
+/// A colour in the plotting crate's form.
 pub(super) fn color(rgb: Rgb) -> Color {
     let [red, green, blue] = rgb.map(|part| part.round() as u8);
     Color::Rgb(red, green, blue)

@@ -1,5 +1,6 @@
-//! Bodies as lines of sight meet them, in closed form. Everything is on the panel, in pixels: right, down, and towards
-//! the viewer, so that a line of sight is a place (right, down) and "near" is a large third coordinate.
+//! Intersections of lines of sight with bodies, in closed form. Coordinates are on the panel, in pixels: right, down,
+//! and towards the viewer. A line of sight is therefore a position (right, down), and close points have a large third
+//! coordinate.
 
 use nalgebra::{Matrix3, Point2, Point3, Vector2, Vector3};
 
@@ -9,12 +10,12 @@ use super::view::{View, corners};
 /// A convex body.
 #[derive(Debug, Clone)]
 pub(super) enum Solid {
-    /// Flat; corners in order, and the side that is seen.
+    /// Flat, with corners in order, and the normal of the visible side.
     Plate {
         corners: Vec<Point3<f64>>,
         normal: Vector3<f64>,
     },
-    /// All that is nearer than the radius to a straight line; a ball where its ends are one.
+    /// All points closer than the radius to a line segment; a ball if its ends coincide.
     Capsule {
         ends: [Point3<f64>; 2],
         radius: f64,
@@ -23,7 +24,7 @@ pub(super) enum Solid {
         ends: [Point3<f64>; 2],
         radius: f64,
     },
-    /// Axes are columns of length 1.
+    /// Axes are unit columns.
     Block {
         centre: Point3<f64>,
         axes: Matrix3<f64>,
@@ -31,27 +32,27 @@ pub(super) enum Solid {
     },
 }
 
-/// Where a line of sight first meets a body.
+/// The first intersection of a line of sight with a body.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Hit {
-    /// How near that is.
+    /// Its depth; larger is closer.
     pub(super) depth: f64,
-    /// Out of the body, of length 1.
+    /// Outward unit normal.
     pub(super) normal: Vector3<f64>,
 }
 
-/// The part of a line of sight that is within a shape: from where it enters to how far it goes.
+/// The interval of a line of sight within a shape, from its entry to its exit.
 #[derive(Debug, Clone, Copy)]
 struct Span {
     enters: Hit,
     leaves: f64,
 }
 
-/// What is steeper than this against the panel is seen edge on.
+/// A surface steeper than this relative to the panel is seen edge on.
 const EDGE_ON: f64 = 1e-6;
 
 impl Solid {
-    /// The body of an item that has one.
+    /// The body of an item; `None` for other items.
     pub(super) fn of(item: &Item, view: &View) -> Option<Solid> {
         Some(match item {
             Item::Plate { corners, .. } => {
@@ -80,7 +81,7 @@ impl Solid {
         })
     }
 
-    /// Where the line of sight through a place of the panel first meets it.
+    /// The first intersection with the line of sight through a position of the panel.
     pub(super) fn hit(&self, at: &Point2<f64>) -> Option<Hit> {
         match self {
             Solid::Plate { corners, normal } => plate(at, corners, normal),
@@ -100,7 +101,7 @@ impl Solid {
         }
     }
 
-    /// Its outermost places on the panel.
+    /// Corners of its bounding rectangle on the panel.
     pub(super) fn bounds(&self) -> [Point2<f64>; 2] {
         let around = |points: &[Point3<f64>], radius: f64| {
             let radius = Vector2::repeat(radius);
@@ -150,7 +151,7 @@ fn cylinder(at: &Point2<f64>, [from, to]: &[Point3<f64>; 2], radius: f64) -> Opt
     common([tube(at, from, &axis, radius)?, slab(at, &nalgebra::center(from, to), &axis, length / 2.0)?])
 }
 
-/// Within an endless cylinder: |b + z a| = r, where a and b are the parts across the axis.
+/// The interval within an infinite cylinder: |b + z a| = r, where a and b are the components across the axis.
 fn tube(at: &Point2<f64>, from: &Point3<f64>, axis: &Vector3<f64>, radius: f64) -> Option<Span> {
     let start = Point3::new(at.x, at.y, 0.0) - from;
     let (a, b) = (Vector3::z() - axis * axis.z, start - axis * axis.dot(&start));
@@ -166,7 +167,7 @@ fn tube(at: &Point2<f64>, from: &Point3<f64>, axis: &Vector3<f64>, radius: f64) 
     })
 }
 
-/// Within two planes at this distance from their middle.
+/// The interval between two planes at this distance from their centre.
 fn slab(at: &Point2<f64>, middle: &Point3<f64>, axis: &Vector3<f64>, half: f64) -> Option<Span> {
     let start = axis.dot(&(Point3::new(at.x, at.y, 0.0) - middle));
     if axis.z.abs() < EDGE_ON {
@@ -179,14 +180,14 @@ fn slab(at: &Point2<f64>, middle: &Point3<f64>, axis: &Vector3<f64>, half: f64) 
     })
 }
 
-/// Where a line of sight enters what several shapes have in common: where it enters the last of them.
+/// The entry of a line of sight into the intersection of several shapes: its entry into the last of them.
 fn common<const N: usize>(spans: [Span; N]) -> Option<Hit> {
     let last = spans.iter().map(|span| span.enters).min_by(|a, b| a.depth.total_cmp(&b.depth))?;
     spans.iter().all(|span| span.leaves <= last.depth).then_some(last)
 }
 
 impl Span {
-    /// The line of sight never leaves.
+    /// The interval of a line of sight that never leaves.
     const ENDLESS: Span =
         Span { enters: Hit { depth: f64::INFINITY, normal: Vector3::new(0.0, 0.0, 1.0) }, leaves: f64::NEG_INFINITY };
 }

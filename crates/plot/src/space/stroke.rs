@@ -12,16 +12,16 @@ use crate::drawing::dashes::dashed;
 use crate::drawing::elements::{area, arrowhead, disc, polyline};
 use crate::{Dash, Stroke};
 
-/// Whether it is hidden is asked at steps of so many pixels.
+/// Distance between the points at which visibility is tested, pixels.
 const STEP: f64 = 1.5;
-/// A line is asked at no more places than this.
+/// Largest number of these points per line.
 const STEPS: f64 = 1e5;
-/// What lies on a surface is before it, by this many pixels.
+/// Items on a surface are moved towards the viewer by this many pixels.
 const LIFT: f64 = 0.75;
-/// Points this near to the line between their neighbours are left out, pixels.
+/// Points closer than this to the line between their neighbours are omitted, pixels.
 const STRAIGHT: f64 = 0.08;
 
-/// Draws an item that is no body and no word.
+/// Draws an item that is neither a body nor a text.
 pub(super) fn draw(item: &Item, bodies: &[Body], view: &View, scene: &mut Scene) {
     match item {
         Item::Path { points, stroke, .. } => {
@@ -39,7 +39,7 @@ pub(super) fn draw(item: &Item, bodies: &[Body], view: &View, scene: &mut Scene)
     }
 }
 
-/// A line through points of the panel, in its dashes, interrupted where a point is not finite.
+/// A line through points of the panel, with its dashes, interrupted where a point is not finite.
 pub(super) fn line(points: &[Point3<f64>], style: &Stroke, bodies: &[Body], scene: &mut Scene) {
     for points in points.split(|point| !point.iter().all(|value| value.is_finite())) {
         for dash in dashed(&straightened(points), &pattern(style)) {
@@ -50,7 +50,7 @@ pub(super) fn line(points: &[Point3<f64>], style: &Stroke, bodies: &[Body], scen
     }
 }
 
-/// The parts of a line that can be seen, and their colours.
+/// The visible parts of a line, with their colours.
 fn visible(points: &[Point3<f64>], color: Rgb, bodies: &[Body]) -> Vec<(Vec<Point2<f64>>, Color)> {
     let mut parts: Vec<(Vec<Point2<f64>>, Option<Rgb>)> = vec![];
     for pair in points.windows(2) {
@@ -69,7 +69,7 @@ fn visible(points: &[Point3<f64>], color: Rgb, bodies: &[Body]) -> Vec<(Vec<Poin
     parts.into_iter().filter_map(|(part, color)| Some((straight(&part), self::color(color?)))).collect()
 }
 
-/// A line that ends in a flat head, turned towards the viewer.
+/// A line with a flat arrowhead, turned towards the viewer.
 fn arrow(from: Point3<f64>, to: Point3<f64>, style: &Stroke, bodies: &[Body], scene: &mut Scene) {
     let length = (to.xy() - from.xy()).norm();
     if length < 1.0 {
@@ -92,7 +92,7 @@ pub(super) fn head(stroke: &Stroke) -> f64 {
     4.0 + 2.5 * stroke.width
 }
 
-/// Lengths of dashes and of the gaps after them, pixels. Their ends are round, and half a width longer.
+/// Lengths of dashes and of the gaps after them, pixels. Dashes have round ends, which extend them by half a width.
 fn pattern(stroke: &Stroke) -> Vec<f64> {
     let lengths: &[f64] = match stroke.dash {
         Dash::Solid => &[],
@@ -102,7 +102,7 @@ fn pattern(stroke: &Stroke) -> Vec<f64> {
     lengths.iter().map(|length| length * stroke.width.max(1.0)).collect()
 }
 
-/// Without the points that lie on the line between others.
+/// The points without those on the straight line between others.
 fn straightened(points: &[Point3<f64>]) -> Vec<Point3<f64>> {
     let (Some(&first), Some(&last)) = (points.first(), points.last()) else { return vec![] };
     let along = (last - first).try_normalize(1e-12).unwrap_or_default();
@@ -122,7 +122,7 @@ fn straightened(points: &[Point3<f64>]) -> Vec<Point3<f64>> {
     }
 }
 
-/// The same on the panel.
+/// The same for points of the panel.
 fn straight(points: &[Point2<f64>]) -> Vec<Point2<f64>> {
     let level: Vec<_> = points.iter().map(|point| Point3::new(point.x, point.y, 0.0)).collect();
     straightened(&level).iter().map(Point3::xy).collect()

@@ -70,7 +70,7 @@ fn space(camera: Camera, items: Vec<Item>) -> Space {
     Space { title: "scene".to_owned(), camera, items, over: vec![], frame, extent: None, size: SIZE }
 }
 
-/// Left, right, top, bottom of what a primitive draws; words only roughly.
+/// Left, right, top, bottom of a primitive; approximate for text.
 fn bounds(primitive: &Primitive) -> Vec<[f64; 4]> {
     match primitive {
         Primitive::PolyLine { points, stroke_width, .. } => {
@@ -98,7 +98,7 @@ fn bounds(primitive: &Primitive) -> Vec<[f64; 4]> {
     }
 }
 
-/// Whether a point is within a body, literally; units of the scene.
+/// Whether a point is within a body, by its definition; units of the scene.
 fn holds(item: &Item, point: &Point3<f64>) -> bool {
     let along = |[a, b]: &[Point3<f64>; 2]| (point - a).dot(&(b - a)) / (b - a).norm_squared();
     let off = |ends: &[Point3<f64>; 2], share: f64| (ends[0] + (ends[1] - ends[0]) * share - point).norm();
@@ -139,7 +139,7 @@ proptest! {
         let solid = Solid::of(&item, &view).unwrap();
         let [low, high] = solid.bounds();
         let at = Point2::new(low.x + across * (high.x - low.x), low.y + down * (high.y - low.y));
-        // Back from the panel to the scene: rows of the view are orthogonal.
+        // From the panel back to the scene; the rows of the view are orthogonal.
         let axes = [Vector3::x(), Vector3::y(), Vector3::z()].map(|axis| view.direction(&axis));
         let origin = view.place(&Point3::origin());
         let back = |depth: f64| {
@@ -154,7 +154,7 @@ proptest! {
                     let across = (corners[1] - corners[0]).cross(&(corners[2] - corners[1])).normalize();
                     prop_assert!((back(hit.depth) - corners[0]).dot(&across).abs() < 1e-6);
                 } else {
-                    // Nothing of it is nearer, and just behind the place, along the normal, is the body.
+                    // No point of the body is closer, and the body is just behind the intersection along the normal.
                     let inside = |depth: f64| holds(&item, &back(depth));
                     prop_assert!((1..400).all(|step| !inside(hit.depth + 0.01 + f64::from(step))));
                     let place = Point3::new(at.x, at.y, hit.depth) - hit.normal * 0.01 - origin;
@@ -206,7 +206,7 @@ proptest! {
             _ => None,
         }).collect();
         prop_assert_eq!(lines.len(), if opaque { 1 } else { 2 });
-        // The last is before the plate, and as long.
+        // The last part is before the plate, up to the end of the line.
         let (points, color) = &lines[lines.len() - 1];
         let (from, to) = (points[0], points[points.len() - 1]);
         prop_assert!((from.0 - through.x).hypot(from.1 - through.y) < 4.0, "{from:?} {through}");

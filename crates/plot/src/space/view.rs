@@ -2,7 +2,7 @@ use nalgebra::{Matrix3, Point3, Vector3};
 
 use super::Camera;
 
-/// Pixels around a point that something there takes: a word, a dot.
+/// Space around a point for a word or a dot, pixels.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct Room {
     pub(super) left: f64,
@@ -11,7 +11,7 @@ pub(super) struct Room {
     pub(super) down: f64,
 }
 
-/// What has to be on the panel: a point, with room around it.
+/// A point that must be on the panel, with space around it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Extent {
     pub(super) at: Point3<f64>,
@@ -31,8 +31,8 @@ pub(super) struct Area {
     pub(super) y: [f64; 2],
 }
 
-/// From space to the panel. A point on the panel has three coordinates, in pixels: to the right, down, and towards the
-/// viewer.
+/// The projection from the scene to the panel. A point on the panel has three coordinates, in pixels: to the right,
+/// down, and towards the viewer.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct View {
     /// Rows: right, down, towards the viewer.
@@ -41,13 +41,13 @@ pub(super) struct View {
     shift: Vector3<f64>,
 }
 
-/// Halvings of the interval in which the scale is looked for.
+/// Number of bisections in the search for the scale.
 const HALVINGS: usize = 60;
 
 impl View {
-    /// The largest view that has everything in an area, in its middle.
+    /// The largest view that shows all extents, centred in an area.
     ///
-    /// Words too long for the area are cut off, and the scene is as large as without them.
+    /// Words too long for the area are cut off; the scene is then as large as without them.
     pub(super) fn fit(camera: &Camera, extents: &[Extent], area: Area) -> Self {
         let view = Self::fit_all(camera, extents, area);
         if view.scale > 0.0 {
@@ -78,12 +78,12 @@ impl View {
         View { axes, scale, shift: Vector3::new(shift(area.x, across), shift(area.y, down), 0.0) }
     }
 
-    /// Where a point of space is on the panel.
+    /// Position of a point of the scene on the panel.
     pub(super) fn place(&self, point: &Point3<f64>) -> Point3<f64> {
         Point3::from(self.direction(&point.coords) * self.scale + self.shift)
     }
 
-    /// A direction of space on the panel, as long as it is.
+    /// A direction of the scene on the panel, with the same length.
     pub(super) fn direction(&self, direction: &Vector3<f64>) -> Vector3<f64> {
         self.axes * direction
     }
@@ -94,7 +94,7 @@ impl View {
     }
 }
 
-/// From the first to the last pixel that things take: (place, room before, room after).
+/// First and last pixel that items cover, given (position, space before, space after).
 fn span(things: impl Iterator<Item = (f64, f64, f64)>) -> [f64; 2] {
     let widen =
         |[low, high]: [f64; 2], (at, before, after): (f64, f64, f64)| [low.min(at - before), high.max(at + after)];
@@ -102,7 +102,7 @@ fn span(things: impl Iterator<Item = (f64, f64, f64)>) -> [f64; 2] {
     if low <= high { [low, high] } else { [0.0, 0.0] }
 }
 
-/// The corners of a box between its lowest and highest; bits of the index say on which side: x, y, z.
+/// The corners of a box from its lowest and highest; the bits of the index select the sides of x, y, z.
 pub(super) fn corners([low, high]: [Point3<f64>; 2]) -> [Point3<f64>; 8] {
     std::array::from_fn(|corner| {
         Point3::from(Vector3::from_fn(|i, _| if corner >> i & 1 == 0 { low[i] } else { high[i] }))

@@ -1,4 +1,4 @@
-//! Words of a scene.
+//! Text of a scene.
 
 use kuva::render::color::Color;
 use kuva::render::render::{Scene, TextAnchor};
@@ -9,10 +9,10 @@ use super::view::View;
 use super::{Item, legend, shade};
 use crate::drawing::elements::{disc, polyline};
 
-/// Notes farther than this from their point have a line to it, pixels.
+/// Notes farther than this from their point get a line to it, pixels.
 const FAR: f64 = 14.0;
 
-/// Draws the words of an item.
+/// Draws the text of an item.
 pub(super) fn draw(item: &Item, view: &View, scene: &mut Scene) {
     match item {
         Item::Note { at, text, shift, color } => {

@@ -5,7 +5,7 @@ use crate::cli::options::config::Config;
 use crate::cli::options::flags::{FitFlags, PrepareFlags, ReadFlags};
 use crate::cli::options::rollout_flags::RollOutFlags;
 
-/// Flags of any text are refused in three lines, or are options.
+/// Any text is either refused in three lines or parsed into flags.
 pub(crate) fn config_file(text: &str) {
     if let Err(failure) = every_table(text) {
         assert_eq!(failure.to_string().lines().count(), 3, "{failure}");

@@ -2,7 +2,7 @@ use std::path::Path;
 
 use policy_align::ConstraintSet;
 
-/// Constraints of any text are refused in one line, or read. There is no robot in the folder.
+/// Any text is either refused in one line or read as constraints. The folder contains no robot.
 pub(crate) fn constraint_file(text: &str) {
     let channels = ["x", "y"].map(ToOwned::to_owned);
     if let Err(error) = ConstraintSet::from_toml(text, &channels, Path::new("no folder")) {

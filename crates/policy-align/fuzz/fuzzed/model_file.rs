@@ -3,7 +3,8 @@ use nalgebra::DVector;
 use policy_align::{CSource, Model, RollOut, to_onnx};
 use serde_json::{Map, Value};
 
-/// A model of any bytes is refused, or answers. Its checksum is no secret, so what it would refuse is tried without it.
+/// Any bytes are either refused or read as a model that predicts. Anyone can compute the checksum, so the bytes are
+/// also tried without it.
 pub(crate) fn model_file(bytes: &[u8]) {
     let _ = Model::from_json(bytes);
     let Ok(mut members) = serde_json::from_slice::<Map<String, Value>>(bytes) else { return };

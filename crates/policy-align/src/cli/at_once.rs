@@ -1,5 +1,5 @@
-//! Files, and pieces of files, that `fit` does not hold together: digests of them, made here, in parts on other machines, or read from such
-//! parts.
+//! Files and pieces of files that `fit` does not hold in memory together. Their digests are computed here, in parts on other machines, or
+//! read from such parts.
 
 use std::collections::HashSet;
 use std::io::ErrorKind;
@@ -18,10 +18,10 @@ use crate::cli::options::flags::{FitFlags, ReadFlags};
 use crate::cli::recorded::{base_name, summaries};
 use crate::cli::session::{Output, Session, complain, write};
 
-/// Bytes of a part at most.
+/// Largest size of a part in bytes.
 const PART: u64 = 1 << 31;
 
-/// Which files, and which pieces of large ones, are read at once.
+/// Decides which files, and which pieces of large ones, are read at once.
 pub(crate) fn division(
     session: &Session,
     files: &[PathBuf],
@@ -48,14 +48,14 @@ pub(crate) fn division(
     Ok(division?)
 }
 
-/// The I-th of N shares.
+/// Parses I/N, the I-th of N shares.
 pub(crate) fn shard(text: &str) -> Result<(usize, usize), Failure> {
     let numbers = text.split_once('/').and_then(|(this, of)| Some((this.parse().ok()?, of.parse().ok()?)));
     let shard = numbers.filter(|&(this, of): &(usize, usize)| (1..=of).contains(&this));
     shard.ok_or_else(|| Failure::usage(format!("'{text}' is not a share I/N with I up to N"), "--shard", "--shard 1/4"))
 }
 
-/// Digests of all further pieces; those made here are kept in `unfinished`.
+/// Digests of all further pieces; those computed here are kept in `unfinished`.
 pub(crate) fn digests(
     session: &Session,
     (division, digester): (&Division, &Digester),
@@ -80,7 +80,7 @@ pub(crate) fn digests(
     })
 }
 
-/// Where digests are kept until `output` is written.
+/// Opens the file that keeps digests until `output` is written.
 pub(crate) fn unfinished(output: &Path, pieces: &[FurtherPiece], digester: &Digester) -> Result<Unfinished, Failure> {
     let path = Unfinished::beside(output);
     Unfinished::open(&path, pieces, digester).map_err(|error| match error.kind() {
@@ -129,12 +129,12 @@ fn part(
     })
 }
 
-/// What they are: "file", or "piece" if there are pieces of files among them.
+/// The noun for these pieces: "piece" if any is a part of a file, otherwise "file".
 fn word(pieces: &[FurtherPiece]) -> &'static str {
     if pieces.iter().all(|further| further.piece.span.is_none()) { "file" } else { "piece" }
 }
 
-/// Writes a share of the digests, to `output` if there is one.
+/// Writes a share of the digests, to `output` if given.
 pub(crate) fn write_part(
     session: &Session,
     (division, digester): (&Division, &Digester),
@@ -175,12 +175,12 @@ pub(crate) fn write_part(
     Ok(Output::done(lines.next(&format!("policy-align fit {next}"))))
 }
 
-/// Where a part is written, unless a name is given.
+/// The default file name of a part.
 fn part_file((this, of): (usize, usize)) -> PathBuf {
     PathBuf::from(format!("part-{this}-of-{of}.json"))
 }
 
-/// The files that were named, those read at once first.
+/// The files named by the user, those read at once first.
 pub(crate) fn files_of(
     named: &[PathBuf],
     division: &Division,

@@ -1,13 +1,13 @@
 use std::time::{SystemTime, UNIX_EPOCH};
 
-/// Coordinated universal time, ISO 8601.
+/// The current coordinated universal time, ISO 8601.
 pub(crate) fn now() -> String {
     let seconds = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs());
     iso(seconds)
 }
 
-/// Of seconds since 1970. Days are counted in eras of 400 years that begin in March (Hinnant, "chrono-compatible
-/// low-level date algorithms").
+/// The time for seconds since 1970. Days are counted in eras of 400 years that begin in March (Hinnant,
+/// "chrono-compatible low-level date algorithms").
 fn iso(seconds: u64) -> String {
     let (days, rest) = (seconds / 86_400, seconds % 86_400);
     let shifted = days + 719_468;

@@ -1,11 +1,11 @@
-//! A model in the context that `--context` chooses.
+//! Fixes a model's context to the one that `--context` chooses.
 
 use policy_align::Model;
 
 use crate::cli::describe::context_flag;
 use crate::cli::failure::Failure;
 
-/// Numbers by name, as a context is given.
+/// Parses NAME=NUMBER pairs.
 fn named_numbers(pairs: &[String], flag: &str) -> Result<Vec<(String, f64)>, Failure> {
     let pair = |text: &str| {
         let pair = text.split_once('=').and_then(|(name, number)| Some((name.to_owned(), number.trim().parse().ok()?)));
@@ -14,7 +14,7 @@ fn named_numbers(pairs: &[String], flag: &str) -> Result<Vec<(String, f64)>, Fai
     pairs.iter().flat_map(|text| text.split(',')).map(pair).collect()
 }
 
-/// A model in the context that was given, if any.
+/// The model in the given context, if any.
 pub(crate) fn in_context(model: Model, pairs: &[String]) -> Result<Model, Failure> {
     if pairs.is_empty() {
         return Ok(model);
@@ -27,7 +27,7 @@ pub(crate) fn in_context(model: Model, pairs: &[String]) -> Result<Model, Failur
     })
 }
 
-/// Refuses a model whose context was not chosen.
+/// Refuses a model with an open context.
 pub(crate) fn chosen_context(model: &Model) -> Result<(), Failure> {
     if model.open_context().is_empty() {
         return Ok(());

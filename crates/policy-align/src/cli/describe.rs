@@ -6,7 +6,7 @@ use policy_align::{Learnt, Model, Verdict};
 use crate::cli::given::value_word;
 use crate::cli::lines::{counted, short};
 
-/// Its verdict.
+/// The model's verdict in words.
 pub(crate) fn verdict(model: &Model) -> &'static str {
     match model.trust.verdict {
         Verdict::Good => "good: all checks passed",
@@ -15,14 +15,14 @@ pub(crate) fn verdict(model: &Model) -> &'static str {
     }
 }
 
-/// A flag with the usual context of a model that has one.
+/// A `--context` flag with the median context of a model.
 pub(crate) fn context_flag(model: &Model) -> String {
     let values = model.context.iter().map(|channel| format!("{}={}", channel.name, short(channel.median)));
     let values: Vec<String> = values.collect();
     if values.is_empty() { String::new() } else { format!(" --context {}", value_word(&values.join(","))) }
 }
 
-/// What learnt it.
+/// Description of the learner.
 pub(crate) fn learner(model: &Model) -> String {
     match &model.learnt {
         Learnt::PolicyAlign(policy) => {

@@ -14,12 +14,12 @@ pub(crate) enum Exit {
     Usage = 2,
     /// A file cannot be read or written.
     File = 3,
-    /// Our own bug.
+    /// A bug in this program.
     Bug = 4,
     Interrupted = 130,
 }
 
-/// Why the program stops: what is wrong, where, and what helps, a line each.
+/// A reason to stop the program: the fault, its place and a remedy, one line each.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Failure {
     pub(crate) exit: Exit,
@@ -42,7 +42,8 @@ impl Failure {
         Failure::new(Exit::Usage, what, place, remedy)
     }
 
-    /// Of a message that says what next after its last semicolon; of others `otherwise` says it.
+    /// Splits a message at its last semicolon into fault and remedy; without a semicolon the remedy
+    /// is `otherwise`.
     pub(crate) fn of_text(exit: Exit, text: &str, place: impl Into<String>, otherwise: &str) -> Self {
         let (what, remedy) = text.rsplit_once("; ").unwrap_or((text, otherwise));
         Failure::new(exit, what, place, remedy)

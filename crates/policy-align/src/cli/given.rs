@@ -1,4 +1,4 @@
-//! The command line as it was given: its paths, and its flags for the command that comes next.
+//! The command line as given: its paths, and its flags for suggested commands.
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
@@ -21,12 +21,14 @@ pub(crate) fn no_input(output: &Path, inputs: &[PathBuf]) -> Result<(), Failure>
     Ok(())
 }
 
-/// The flags and files of the command `verb` for another one, but for `dropped` flags and their values, and with `added` ones.
+/// The flags and files of the command `verb`, to be reused in another command: without the `dropped` flags and their values,
+/// and with `added` ones.
 pub(crate) fn again(verb: &str, dropped: &[&str], added: &str) -> String {
     others(std::env::args_os().skip(1), verb, dropped, added)
 }
 
-/// What of the arguments stays; the verb, and flags of all commands that only concern the output, go. Behind `--` are no flags.
+/// The arguments that remain. The verb and the global flags that only concern the output are removed. Arguments after `--` are
+/// not flags.
 fn others(mut arguments: impl Iterator<Item = OsString>, verb: &str, dropped: &[&str], added: &str) -> String {
     let (mut words, mut begun) = (Vec::new(), false);
     while let Some(argument) = arguments.next() {
@@ -57,7 +59,7 @@ fn others(mut arguments: impl Iterator<Item = OsString>, verb: &str, dropped: &[
     words.join(" ")
 }
 
-/// An argument as a shell takes it: of a flag the value is quoted.
+/// An argument quoted for a shell; in `--flag=value` only the value is quoted.
 fn word(text: &str) -> String {
     match text.split_once('=') {
         Some((flag, value)) if flag.starts_with('-') => format!("{flag}={}", value_word(value)),
@@ -65,14 +67,14 @@ fn word(text: &str) -> String {
     }
 }
 
-/// The value of a flag as a shell takes it. It may begin with a minus, unlike a path.
+/// The value of a flag, quoted for a shell. Unlike a path, it may begin with a minus.
 pub(crate) fn value_word(text: &str) -> String {
     let rest = text.trim_start_matches('-');
     let minus = &text[..text.len() - rest.len()];
     if rest.is_empty() && !minus.is_empty() { minus.to_owned() } else { format!("{minus}{}", quoted(Path::new(rest))) }
 }
 
-/// The flags that are given, as words that begin with a blank each.
+/// The flags that are set, as words with a leading blank each.
 pub(crate) fn flag_words(flags: &impl Serialize) -> String {
     let text = |value: &Value| value.as_str().map_or_else(|| value.to_string(), ToOwned::to_owned);
     let one = |flag: &str, value: &Value| match value {
@@ -86,7 +88,7 @@ pub(crate) fn flag_words(flags: &impl Serialize) -> String {
             value => one(&flag, &value),
         }
     };
-    // What no table can hold was refused before.
+    // Values that no table can hold were refused earlier.
     given(flags).map_or_else(|_| String::new(), |table| table.into_iter().map(of).collect())
 }
 

@@ -1,4 +1,4 @@
-//! Ctrl-C, and what ends a program otherwise.
+//! Ctrl-C and other signals that end the program.
 
 use std::process::exit;
 use std::sync::Mutex;
@@ -8,17 +8,17 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use crate::cli::failure::Exit;
 use crate::cli::session::complain;
 
-/// What is said before an interrupt ends the program.
+/// Message that is printed before an interrupt ends the program.
 static LAST_WORDS: Mutex<Option<String>> = Mutex::new(None);
 
-/// Whether a command ends by itself when it is interrupted, and whether it was.
+/// Whether a command handles an interrupt itself, and whether one has occurred.
 #[cfg(feature = "ros2")]
 static AWAITED: AtomicBool = AtomicBool::new(false);
 #[cfg(feature = "ros2")]
 static HEARD: AtomicBool = AtomicBool::new(false);
 
-/// Ends the program at once, but for a command that waits for the interrupt; a second one ends that too. Files are written whole or not
-/// at all.
+/// Ends the program at once, unless a command waits for the interrupt; a second interrupt ends that command too. Files are written
+/// completely or not at all.
 pub(crate) fn interrupt() {
     #[cfg(feature = "ros2")]
     if AWAITED.load(Ordering::SeqCst) && !HEARD.swap(true, Ordering::SeqCst) {
@@ -31,20 +31,20 @@ pub(crate) fn interrupt() {
     exit(Exit::Interrupted as i32)
 }
 
-/// Says this if an interrupt ends the program; none says nothing.
+/// Sets the message that is printed if an interrupt ends the program; `None` prints nothing.
 pub(crate) fn last_words(words: Option<String>) {
     if let Ok(mut last) = LAST_WORDS.lock() {
         *last = words;
     }
 }
 
-/// From now on an interrupt does not end the program: the command looks for it.
+/// From now on an interrupt does not end the program; the command polls for it.
 #[cfg(feature = "ros2")]
 pub(crate) fn await_interrupt() {
     AWAITED.store(true, Ordering::SeqCst);
 }
 
-/// Whether there was one since.
+/// Whether an interrupt has occurred since.
 #[cfg(feature = "ros2")]
 pub(crate) fn interrupted() -> bool {
     HEARD.load(Ordering::SeqCst)

@@ -3,12 +3,12 @@ use std::path::Path;
 pub(crate) use prepare::numbers::{counted, short, squared_error};
 use text::plain;
 
-/// Columns of the terminal that are used.
+/// Columns of the terminal that the output uses.
 const WIDTH: usize = 80;
-/// Columns of a line's label.
+/// Width of a line's label in columns.
 const LABEL: usize = 13;
 
-/// The output of a command: lines with a label each, folded to the width of a terminal, without invisible characters.
+/// The output of a command: labelled lines, wrapped at the width of a terminal, without invisible characters.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub(crate) struct Lines(String);
 
@@ -24,12 +24,12 @@ impl Lines {
         }
     }
 
-    /// A file that was written, and what is in it.
+    /// Adds a line on a written file and its contents.
     pub(crate) fn written(&mut self, path: &Path, what: &str) {
         self.add("written", &format!("{}: {what}", path.display()));
     }
 
-    /// The last line, set apart: what to do next.
+    /// Appends the last line, which suggests the next command.
     pub(crate) fn next(self, command: &str) -> String {
         self.0 + &format!("\nNext:  {}\n", plain(command))
     }
@@ -43,7 +43,7 @@ impl Lines {
     }
 }
 
-/// Text in lines of at most `width` columns, broken at spaces.
+/// The text wrapped at spaces into lines of at most `width` columns.
 pub(crate) fn folded(text: &str, width: usize) -> Vec<String> {
     let mut lines = vec![String::new()];
     for word in text.split_whitespace() {
@@ -61,12 +61,12 @@ pub(crate) fn folded(text: &str, width: usize) -> Vec<String> {
     lines
 }
 
-/// Numbers with commas between.
+/// Numbers separated by commas.
 pub(crate) fn list(values: impl IntoIterator<Item = f64>) -> String {
     values.into_iter().map(short).collect::<Vec<_>>().join(", ")
 }
 
-/// Bytes for people.
+/// A size in bytes, human-readable.
 pub(crate) fn size(bytes: usize) -> String {
     match bytes {
         0..1000 => format!("{bytes} bytes"),

@@ -1,4 +1,4 @@
-//! The program: a verb a file.
+//! The program, with one file per verb.
 
 mod at_once;
 mod clock;
@@ -66,7 +66,7 @@ Exit codes:
 Example:
   policy-align check toy.csv";
 
-/// All commands, each with the flags in its help that it needs most: `check --help` lists all those of reading.
+/// All commands. Each lists only its most important flags in its help; `check --help` lists all flags for reading.
 fn command() -> Command {
     let rare = options::flags::rare();
     let brief = |command: Command| {
@@ -115,10 +115,10 @@ impl Verb {
     }
 }
 
-/// A command line that is not understood, in our three lines; help and version are results.
+/// Converts a command line that cannot be parsed to our three lines; help and version are results.
 fn usage(error: &clap::Error) -> Result<Output, Failure> {
     if matches!(error.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion) {
-        // clap colours it as the terminal and NO_COLOR say.
+        // clap colours it according to the terminal and NO_COLOR.
         let _ = error.print();
         return Ok(Output::done(String::new()));
     }

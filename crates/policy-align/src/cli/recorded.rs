@@ -1,4 +1,4 @@
-//! Recordings of the files that a command names.
+//! Recordings from the files that a command names.
 
 use std::path::{Path, PathBuf};
 
@@ -15,15 +15,15 @@ use crate::cli::options::config::Config;
 use crate::cli::options::flags::{PrepareFlags, ReadFlags};
 use crate::cli::session::Session;
 
-/// Warnings that are printed: a recorder that repeats itself would fill the screen.
+/// Largest number of warnings printed: a repetitive recorder would fill the screen.
 const PRINTED: usize = 6;
 
-/// Reads them, with a bar if it takes long; warns of what was found meanwhile.
+/// Reads the files, with a progress bar if it takes long, and prints a warning for each finding.
 pub(crate) fn read(session: &Session, files: &[PathBuf], flags: &ReadFlags) -> Result<Recordings, Failure> {
     Ok(read_with_context(session, files, flags)?.0)
 }
 
-/// As [`read`], with what is to be done with contexts.
+/// As [`read`], and returns how contexts are used.
 pub(crate) fn read_with_context(
     session: &Session,
     files: &[PathBuf],
@@ -33,7 +33,7 @@ pub(crate) fn read_with_context(
     read_pieces(session, &pieces, flags)
 }
 
-/// As [`read_with_context`], of files of which some are read in part.
+/// As [`read_with_context`], for files of which some are read in part.
 pub(crate) fn read_pieces(
     session: &Session,
     pieces: &[Piece],
@@ -51,7 +51,7 @@ pub(crate) fn read_pieces(
     Ok((recordings, flags.context_use(context)))
 }
 
-/// Reads and prepares recordings in the channels and units of a model; also with which flags they were read.
+/// Reads and prepares recordings in the channels and units of a model. Also returns the flags for reading.
 pub(crate) fn prepared_for(
     session: &Session,
     model: &Model,
@@ -67,7 +67,7 @@ pub(crate) fn prepared_for(
     own.elsewhere.clone_from(&reading.elsewhere);
     let reading = own;
     let mut options = config.under("prepare", preparing)?.options(reading.dt)?;
-    // The learner's states were multiplied by these, whatever the flags are.
+    // The learner's states were multiplied by these scales, so the flags do not matter.
     options.scale = model.scale();
     options.context = model.context_use();
     let recordings = read(session, files, &reading)?;
@@ -85,10 +85,10 @@ pub(crate) fn prepared_for(
     Ok((reading, prepared))
 }
 
-/// Channels that vary so many times as much as in the recordings of the model have another unit.
+/// A channel whose range exceeds the model's by this factor has another unit.
 const OTHER_UNIT: f64 = 10.0;
 
-/// Says which channels seem to have other units than the model's.
+/// Describes the channels that seem to have other units than the model's.
 fn other_units(model: &Model, prepared: &Prepared) -> Option<String> {
     let width = |channel: &StateChannel| channel.high - channel.low;
     let pairs = prepared.state.iter().zip(&model.state);
@@ -102,7 +102,7 @@ fn other_units(model: &Model, prepared: &Prepared) -> Option<String> {
     })
 }
 
-/// The constraints that acted on prepared recordings of `files`.
+/// The constraints on prepared recordings of `files`.
 pub(crate) fn acted(
     model: &Model,
     prepared: &Prepared,
@@ -114,7 +114,7 @@ pub(crate) fn acted(
     })
 }
 
-/// Refuses a name that no episode has; `flag` and `place` tell where it was given.
+/// Refuses a name that no episode has; `flag` and `place` say where it was given.
 pub(crate) fn known_episode<S: AsRef<str>>(
     name: &str,
     known: &[S],
@@ -137,24 +137,24 @@ fn warn(session: &Session, findings: &[Finding]) {
     }
 }
 
-/// Findings other than those that reading has printed already.
+/// Findings that reading has not yet printed.
 pub(crate) fn unreported(findings: &[Finding], reported: &[Finding]) -> Vec<Finding> {
     findings.iter().filter(|finding| !reported.contains(finding)).cloned().collect()
 }
 
-/// Names and checksums, for the model.
+/// Names and checksums of the files, for the model.
 pub(crate) fn summaries(files: &[PathBuf]) -> Result<Vec<FileSummary>, Failure> {
     let summary = |path: &PathBuf| FileSummary::of(path).map_err(|error| Failure::reading(path, error));
-    // Of a folder its files are read, but not listed one by one.
+    // The files in a folder are read, but not listed one by one.
     files.iter().filter(|path| path.is_file()).map(summary).collect()
 }
 
-/// Without folders: a model does not tell where it was made.
+/// The name without folders: a model does not reveal where it was made.
 pub(crate) fn base_name(path: &Path) -> String {
     path.file_name().map_or_else(|| displayed(path), |name| name.to_string_lossy().into_owned())
 }
 
-/// The files in a few words.
+/// A short description of the files.
 pub(crate) fn named(files: &[PathBuf]) -> String {
     match files {
         [file] => base_name(file),

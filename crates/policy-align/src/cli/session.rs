@@ -24,7 +24,7 @@ pub(crate) struct Session {
     pub(crate) config: Option<PathBuf>,
 }
 
-/// The output of a command on standard output, and its exit code.
+/// The output of a command for standard output, and its exit code.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Output {
     pub(crate) text: String,
@@ -36,13 +36,13 @@ impl Output {
         Output { text, exit: Exit::Done }
     }
 
-    /// As JSON, which files were written.
+    /// The written files, as JSON.
     pub(crate) fn written<'a>(files: impl IntoIterator<Item = &'a Path>) -> Output {
         let files: Vec<String> = files.into_iter().map(displayed).collect();
         Output::json(&json!({ "written": files }), Exit::Done)
     }
 
-    /// One document in one line. What a terminal would not show is escaped, as JSON allows in its texts.
+    /// One document in one line. Characters invisible in a terminal are escaped, as JSON allows in strings.
     pub(crate) fn json(document: &Value, exit: Exit) -> Output {
         let mut text = String::new();
         for c in document.to_string().chars() {
@@ -57,14 +57,14 @@ impl Output {
 }
 
 impl Session {
-    /// Prints a warning next to the result.
+    /// Prints a warning to standard error.
     pub(crate) fn warn(&self, text: &str) {
         if !self.quiet {
             complain(&format!("warning: {text}"));
         }
     }
 
-    /// A bar that appears when something takes longer than a second, on a terminal.
+    /// A progress bar that appears on a terminal after one second.
     pub(crate) fn bar(&self, length: u64, template: &str) -> ProgressBar {
         let bar = ProgressBar::with_draw_target(Some(length), ProgressDrawTarget::hidden());
         if self.quiet || self.json || !io::stderr().is_terminal() {
@@ -87,17 +87,18 @@ impl Session {
     }
 }
 
-/// Writes a whole file or nothing.
+/// Writes a file completely or not at all.
 pub(crate) fn write(path: &Path, contents: &[u8]) -> Result<(), Failure> {
     write_whole(path, contents).map_err(|error| Failure::writing(path, error))
 }
 
-/// Writes files that belong together: none is replaced before all are on the disk.
+/// Writes files that belong together: none is replaced before all are on disk.
 pub(crate) fn write_together<T: AsRef<[u8]>>(files: &[(PathBuf, T)]) -> Result<(), Failure> {
     policy_align::write_together(files).map_err(|(path, error)| Failure::writing(&path, error))
 }
 
-/// Writes a result; a closed pipe is no error. Other programs read data as they are.
+/// Writes a result; a closed pipe is no error. When the output is not a terminal, the text is written
+/// unchanged for other programs.
 pub(crate) fn tell(text: &str) -> Result<(), Failure> {
     let mut stdout = io::stdout().lock();
     let text = if stdout.is_terminal() { plain(text) } else { text.into() };
@@ -109,7 +110,7 @@ pub(crate) fn tell(text: &str) -> Result<(), Failure> {
     }
 }
 
-/// Writes a line to standard error; a closed one stops nothing.
+/// Writes a line to standard error; errors are ignored.
 pub(crate) fn complain(text: &str) {
     let _ = writeln!(io::stderr(), "{}", plain(text));
 }

@@ -1,4 +1,4 @@
-//! States of a file, as prediction needs them: a column for each channel, found by name, or the channels alone.
+//! States from a file for prediction: one column per channel, found by name, or the channels alone.
 
 use std::path::Path;
 
@@ -7,10 +7,11 @@ use policy_align::Model;
 
 use crate::cli::failure::{Exit, Failure, displayed};
 
-/// Bytes of states, at most.
+/// Largest size of a file of states, in bytes.
 const LARGEST: u64 = 1 << 30;
 
-/// States (n, N), each followed by its context where none was chosen, (n + p, N), of a text with separators; `-` is standard input.
+/// Reads states (n, N) from delimited text; with an open context, each is followed by its context, (n + p, N). `-` is standard
+/// input.
 pub(crate) fn states(path: &Path, model: &Model) -> Result<DMatrix<f64>, Failure> {
     let bytes = if path == Path::new("-") {
         demo_io::read_bounded(std::io::stdin(), LARGEST)
@@ -63,7 +64,7 @@ fn parsed(text: &str, model: &Model, place: &str) -> Result<DMatrix<f64>, Failur
     Ok(states)
 }
 
-/// Where the channels are, by a header or by their number.
+/// Columns of the channels, by a header or by number.
 fn columns_of(record: &csv::StringRecord, model: &Model) -> Option<Vec<usize>> {
     if record.iter().all(|field| field.parse::<f64>().is_ok()) {
         return (record.len() == inputs(model).count()).then(|| (0..record.len()).collect());
@@ -71,7 +72,7 @@ fn columns_of(record: &csv::StringRecord, model: &Model) -> Option<Vec<usize>> {
     inputs(model).map(|name| record.iter().position(|field| field == name)).collect()
 }
 
-/// Names of what the policy takes.
+/// Names of the policy's inputs.
 fn inputs(model: &Model) -> impl Iterator<Item = &str> {
     model.state.iter().chain(model.open_context()).map(|channel| channel.name.as_str())
 }

@@ -1,4 +1,4 @@
-//! Recordings and roll-outs as files, with the robot that moves.
+//! Writes recordings and roll-outs as files, with the robot that moves.
 
 use std::path::{Path, PathBuf};
 
@@ -24,7 +24,8 @@ impl RobotFlag {
         self.robot.as_deref()
     }
 
-    /// Writes recordings, and the robot if there is one, whose joints all channels are but those of a context; which joints they are.
+    /// Writes recordings, and the robot if given; all channels except those of a context must be its joints. Returns which joints
+    /// they are.
     pub(crate) fn write(
         &self,
         output: &Path,
@@ -44,7 +45,7 @@ impl RobotFlag {
 }
 
 impl Lines {
-    /// Which joints the channels are, if a robot was written.
+    /// Adds a line on the channels' joints if a robot was written.
     pub(crate) fn robot(&mut self, matching: Option<&str>) {
         if let Some(matching) = matching {
             self.add("robot", matching);
@@ -52,7 +53,7 @@ impl Lines {
     }
 }
 
-/// Why recordings were not written.
+/// Converts the error of writing recordings.
 fn unwritten(output: &Path, error: WriteError) -> Failure {
     let remedy = match error {
         WriteError::Io { source, .. } => return Failure::writing(output, source),

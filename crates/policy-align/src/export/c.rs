@@ -6,7 +6,7 @@ use text::plain;
 use super::error::ExportError;
 use crate::{Model, Verdict};
 
-/// Words of C, and names of the file.
+/// Keywords of C and names that the file uses.
 const TAKEN: &[&str] = &[
     "auto", "break", "case", "char", "const", "continue", "default", "do", "double", "else", "enum", "extern", "float",
     "for", "goto", "if", "inline", "int", "long", "register", "restrict", "return", "short", "signed", "sizeof",
@@ -14,8 +14,8 @@ const TAKEN: &[&str] = &[
     "M", "A", "BOUNDS", "C", "Q", "V", "Z", "SCALE", "NORM", "MEAN", "CENTRE", "METRIC", "SLOPE", "D", "signgam",
 ];
 
-/// Functions and macros of `math.h`, also those of POSIX that compilers declare if not asked for C99 alone; all functions exist with an
-/// f or l at their end, too.
+/// Functions and macros of `math.h`, including those of POSIX that compilers declare unless restricted to C99. All functions also exist
+/// with the suffix f or l.
 const MATH: &[&str] = &[
     "acos",
     "acosh",
@@ -111,23 +111,23 @@ const MATH: &[&str] = &[
 
 /// A model in C: one file of ISO C99 that needs only `math.h`.
 ///
-/// It defines `int policy(const double *x, double *u, double *phi)`: from a state (n) in the units of the recording it
-/// writes the action (n), per second, and the potential (NaN where the policy has none), either of which may be `NULL`,
-/// and returns 1 within the data. Of a model with a context it is `int policy(const double *x, const double *c, double *u,
-/// double *phi)`, c the context (p) in the order of the file's comment. Outside, where a [`ModelPolicy`](crate::ModelPolicy) has no support, it returns 0, with
-/// an action of 0 and a potential of NaN: the caller stops.
+/// It defines `int policy(const double *x, double *u, double *phi)`. From a state (n) in the units of the recording it writes the action
+/// (n), per second, and the potential (NaN if the policy has none), and returns 1 within the data. `u` and `phi` may be `NULL`. With a
+/// context, it is `int policy(const double *x, const double *c, double *u, double *phi)`; c is the context (p) in the order of the file's
+/// comment. Outside the data, where a [`ModelPolicy`](crate::ModelPolicy) has no support, it returns 0 with an action of 0 and a potential
+/// of NaN: the caller must stop.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct CSource {
     /// Name of the function.
     pub name: String,
-    /// Of its numbers.
+    /// Precision of its numbers.
     pub precision: Precision,
 }
 
 /// Number type in C.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Precision {
-    /// `double`: the model's own results but for rounding.
+    /// `double`: the model's own results up to rounding.
     Double,
     /// `float`, for controllers without double precision.
     Single,
@@ -151,7 +151,7 @@ impl CSource {
         Err(ExportError::Name { name: self.name.clone() })
     }
 
-    /// What it is, in a comment, and the numbers it is made of.
+    /// The comment that describes the model and its origin, and the constants.
     pub(super) fn head(&self, model: &Model) -> String {
         let verdict = match model.trust.verdict {
             Verdict::Good => "good",
@@ -209,7 +209,7 @@ impl CSource {
         }
     }
 
-    /// A function of `math.h` in this precision.
+    /// The name of a `math.h` function in this precision.
     pub(super) fn function(&self, name: &str) -> String {
         match self.precision {
             Precision::Double => name.to_owned(),
@@ -217,8 +217,8 @@ impl CSource {
         }
     }
 
-    /// The end of the function: 1 within the bounds of `all` inputs, where `known` holds; else no action, no potential, and 0. What is not finite
-    /// is in no bounds.
+    /// The end of the function. It returns 1 if `all` inputs are within their bounds and `known` holds; otherwise 0, with a zero action and
+    /// no potential. Non-finite inputs are in no bounds.
     pub(super) fn ending(&self, all: &str, known: &str) -> String {
         let zero = self.number(0.0);
         format!(
@@ -232,13 +232,13 @@ impl CSource {
         )
     }
 
-    /// A number, to its last bit.
+    /// A number with all its digits.
     pub(super) fn number(&self, value: f64) -> String {
         match self.precision {
             Precision::Double => format!("{value:e}"),
             Precision::Single => {
                 let value = value as f32;
-                // What is too large for it is as far as it goes.
+                // Too large numbers become the largest finite one.
                 format!("{:e}f", value.clamp(f32::MIN, f32::MAX))
             }
         }
@@ -257,7 +257,7 @@ impl CSource {
         text.push_str("};\n");
     }
 
-    /// A table with a row for each column of a matrix.
+    /// A table with one row for each column of a matrix.
     pub(super) fn columns(&self, name: &str, matrix: &DMatrix<f64>, text: &mut String) {
         let _ = writeln!(text, "static const real {name}[{}][{}] = {{", matrix.ncols(), matrix.nrows());
         for column in matrix.column_iter() {
@@ -271,7 +271,7 @@ impl CSource {
     }
 }
 
-/// What can stand in a comment, in one line.
+/// The text in one line, made safe for a comment.
 fn comment(text: &str) -> String {
     let text = text.replace("*/", "* /").replace("/*", "/ *").replace("??/", "? ?/");
     plain(&text.replace(['\\', '\n', '\t'], " ")).into_owned()

@@ -4,13 +4,13 @@ use gp::{DirectFormula, Exponential, Fall, Falling, ScaledStates, Series, SlopeF
 
 use super::c::CSource;
 
-/// What differs where a context follows the state.
+/// Parts of the text that differ if a context follows the state.
 struct Layout {
     /// Number of all inputs.
     all: &'static str,
     /// The parameters before `u`.
     inputs: &'static str,
-    /// Declares the array `x`, to which `joined` joins state and context.
+    /// The declaration of the array `x`, in which `joined` joins state and context.
     declared: &'static str,
     joined: &'static str,
     has_context: bool,
@@ -89,7 +89,7 @@ int {name}({inputs}, real *u, real *phi) {{
     );
 }
 
-/// The context's part of a distance; rotation knows the state's part, `w`, alone.
+/// Adds the context's part to a squared distance; `rotates` also keeps the state's part alone, as `w`.
 fn rest(layout: &Layout, rotates: bool) -> String {
     if !layout.has_context {
         return String::new();
@@ -156,7 +156,7 @@ fn write_scaled(c: &CSource, scaled: &ScaledStates<'_>, text: &mut String) {
     c.columns("Z", scaled.z, text);
 }
 
-/// Scaled coordinates.
+/// Computes scaled coordinates.
 fn entry(c: &CSource, scaled: &ScaledStates<'_>, all: &str) -> String {
     let (spread, zero) = (c.number(scaled.spread), c.number(0.0));
     format!(
@@ -172,7 +172,7 @@ fn ending(c: &CSource, all: &str, squared_radius: f64) -> String {
     c.ending(all, &format!("nearest <= {}", c.number(squared_radius)))
 }
 
-/// Adds the terms' g and h (S3) at the squared distance `s`, of which `w` lies along the state.
+/// Adds the terms' g and h (S3) at the squared distance `s`, of which `w` is the state's part.
 fn slope_terms(c: &CSource, falling: &Falling, layout: &Layout) -> String {
     let moving = if layout.has_context { "w" } else { "s" };
     falling.series().iter().map(|series| slope_series(c, series, moving)).collect()
@@ -215,12 +215,12 @@ fn direct_terms(c: &CSource, falling: &Falling) -> String {
     falling.series().iter().map(written).collect()
 }
 
-/// What a series' exponentials fall with, and what its terms are polynomials of.
+/// The variable of a series' exponentials, and that of its terms' polynomials.
 fn arguments<'a>(series: &Series, moving: &'a str) -> (&'static str, &'a str) {
     if series.exponential == Exponential::Gaussian { ("s", moving) } else { ("r", "r") }
 }
 
-/// Opens a block of a series and declares what it needs.
+/// Opens a block for a series and declares its variables.
 fn opening(c: &CSource, series: &Series, beside: &str) -> String {
     let distance = match series.exponential {
         Exponential::Gaussian => String::new(),
@@ -229,7 +229,7 @@ fn opening(c: &CSource, series: &Series, beside: &str) -> String {
     format!("        {{\n            real e{distance}{beside};\n")
 }
 
-/// Makes `e` a term's exponential, from that of the term before where it can.
+/// Sets `e` to a term's exponential, by squaring that of the previous term where possible.
 fn exponential(c: &CSource, summand: &Summand, x: &str) -> String {
     match summand.rate {
         Some(rate) => format!("e = {}({} * {x}); ", c.function("exp"), c.number(rate)),

@@ -6,7 +6,7 @@ use nalgebra::DMatrix;
 use super::c::CSource;
 use super::lwpr_tables::LwprTables;
 
-/// f = mean + norm_out Σ w y / Σ w and its gradient, fields that take part above the cutoff.
+/// f = mean + norm_out Σ w y / Σ w and its gradient; only fields with weights above the cutoff take part.
 pub(super) fn write(c: &CSource, lwpr: &LwprTables<'_>, per_unit: f64, text: &mut String) {
     let (n, m) = (lwpr.norm_in.len(), lwpr.fields.len());
     let table =
@@ -24,7 +24,7 @@ pub(super) fn write(c: &CSource, lwpr: &LwprTables<'_>, per_unit: f64, text: &mu
     } else {
         "v[k] = METRIC[m][k] * d[k];".to_owned()
     };
-    // The weight and twice its derivative by q.
+    // The weight, and twice its derivative with respect to q.
     let weight = match lwpr.kernel {
         Kernel::Gaussian => {
             format!("w = {}({} * q); dw = -w;", c.function("exp"), number(-0.5))

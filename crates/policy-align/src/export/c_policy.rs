@@ -9,7 +9,7 @@ use super::{c_gp, c_lwpr};
 use crate::Model;
 
 impl CSource {
-    /// The text of the file.
+    /// The text of the C file for a model.
     ///
     /// # Errors
     /// [`ExportError`].

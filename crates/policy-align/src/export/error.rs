@@ -1,24 +1,24 @@
 use thiserror::Error;
 
-/// Why a model cannot be exported.
+/// Reasons why a model cannot be exported.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum ExportError {
-    /// Nothing of the policy can be written down.
+    /// The policy is empty.
     #[error("the policy is zero everywhere: no receptive field was learnt")]
     Nothing,
-    /// Not a name in C.
+    /// The name is not valid in C.
     #[error(
         "'{name}' is not a C name: letters, digits and _, not starting with a digit, no keyword and no name of math.h"
     )]
     Name {
-        /// What was given.
+        /// The given name.
         name: String,
     },
     /// The model cannot be stored.
     #[error("the model cannot be stored: {reason}")]
     Unwritable {
-        /// What [`ModelError`](crate::ModelError) says.
+        /// Text of the [`ModelError`](crate::ModelError).
         reason: String,
     },
 }

@@ -8,10 +8,10 @@ const TENSOR: &str = "model";
 
 /// A model as a policy of LeRobot, for the plug-in `lerobot_policy_align`: the files of a folder, each with its name.
 ///
-/// `config.json` has the type `align` and the shapes of `observation.state` (n), of a model with a context of
+/// `config.json` has the type `align` and the shapes of `observation.state` (n), with a context also of
 /// `observation.environment_state` (p), and of `action` (n). `model.safetensors` holds the model file's bytes as one tensor of
-/// 8-bit integers. `policy_preprocessor.json` and `policy_postprocessor.json` list the steps that LeRobot sets itself by name;
-/// none of them changes a number, since the model has its own units.
+/// 8-bit integers. `policy_preprocessor.json` and `policy_postprocessor.json` list the steps that LeRobot itself looks up by
+/// name; they change no number, since the model has its own units.
 ///
 /// # Errors
 /// [`ExportError::Unwritable`].
@@ -54,7 +54,7 @@ fn document(value: &Value) -> Vec<u8> {
 fn safetensors(bytes: &[u8]) -> Vec<u8> {
     let tensor = json!({"dtype": "U8", "shape": [bytes.len()], "data_offsets": [0, bytes.len()]});
     let mut header = json!({"__metadata__": {"format": "pt"}, TENSOR: tensor}).to_string();
-    // What follows begins at a multiple of 8.
+    // The data that follow start at a multiple of 8.
     header.push_str(&" ".repeat(header.len().next_multiple_of(8) - header.len()));
     [&(header.len() as u64).to_le_bytes(), header.as_bytes(), bytes].concat()
 }

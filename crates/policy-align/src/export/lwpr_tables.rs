@@ -2,10 +2,10 @@ use lwpr::{Kernel, LocalPrediction, StandardisedModel};
 
 use super::error::ExportError;
 
-/// A potential as LWPR predicts it: f = mean + norm_out Σ w y / Σ w.
+/// The tables of LWPR's potential: f = mean + norm_out Σ w y / Σ w.
 pub(super) struct LwprTables<'a> {
     pub(super) kernel: Kernel,
-    /// Fields take part above this.
+    /// Only fields with weights above this take part.
     pub(super) cutoff: f64,
     /// Inputs are divided by these, (n).
     pub(super) norm_in: &'a [f64],

@@ -5,15 +5,15 @@ use super::tables::{LearnerTables, Tables};
 use super::{onnx_gp, onnx_lwpr};
 use crate::{Model, Verdict};
 
-/// The version of the operators, and of the format that came with them.
+/// The version of the operators, and the format version that introduced them.
 const OPERATORS: u64 = 17;
 const FORMAT: u64 = 8;
 
 /// A model as ONNX: operators of version 17 on doubles.
 ///
-/// Its input is `x`, (B, n), states in the units of the recording, and of a model with a context `c`, (B, p); its outputs are `u`, (B, n), actions per second, `phi`,
-/// (B), potentials, unless the policy has none, and `support`, (B), whether a state is within the data. Where it is not, `u`
-/// is 0 and `phi` is NaN, as in [`CSource`](crate::CSource).
+/// Its input is `x`, (B, n), states in the units of the recording, and with a context also `c`, (B, p). Its outputs are `u`, (B, n),
+/// actions per second; `phi`, (B), potentials, unless the policy has none; and `support`, (B), whether a state is within the data. Outside
+/// the data, `u` is 0 and `phi` is NaN, as in [`CSource`](crate::CSource).
 ///
 /// # Errors
 /// [`ExportError`].
@@ -46,11 +46,11 @@ pub fn to_onnx(model: &Model) -> Result<Vec<u8>, ExportError> {
     Ok(described(model, &graph.finished((n, all - n), &outputs)))
 }
 
-/// Support, within bounds.
+/// Support limited to the bounds.
 fn within(graph: &Graph, inputs: &str, bounds: &[[f64; 2]], support: &str) -> String {
     let low = graph.constant(&[bounds.len()], bounds.iter().map(|[low, _]| *low));
     let high = graph.constant(&[bounds.len()], bounds.iter().map(|[_, high]| *high));
-    // How far beyond, summed over channels: 0 within.
+    // Distance beyond the bounds, summed over channels; 0 within them.
     let sides = [[&*low, inputs], [inputs, &high]].map(|difference| graph.node("Sub", &difference));
     let [below, above] = sides.map(|side| graph.node("Relu", &[&side]));
     let beyond = graph.sum(&graph.node("Add", &[&below, &above]), 1);
@@ -58,7 +58,7 @@ fn within(graph: &Graph, inputs: &str, bounds: &[[f64; 2]], support: &str) -> St
     graph.node("And", &[support, &within])
 }
 
-/// The file around a graph.
+/// The model file that contains a graph.
 fn described(model: &Model, graph: &Message) -> Vec<u8> {
     let entry = |key: &str, value: &str| Message::default().text(1, key).text(2, value);
     let verdict = match model.trust.verdict {

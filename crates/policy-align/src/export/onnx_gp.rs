@@ -3,7 +3,8 @@ use nalgebra::DMatrix;
 
 use super::onnx_graph::{Graph, LearnerOutputs};
 
-/// Scaled coordinates z, (B, n), their differences from the learnt states, (B, M, n), and squares of these, (B, M).
+/// Scaled coordinates z, (B, n), their differences from the learnt states, (B, M, n), and the squared distances,
+/// (B, M).
 fn differences(graph: &Graph, scaled: &ScaledStates<'_>, state: &str) -> [String; 3] {
     let (n, m) = scaled.z.shape();
     let mean = graph.constant(&[n], scaled.mean.iter().copied());
@@ -19,7 +20,7 @@ fn support(graph: &Graph, squared_radius: f64, squared: &str) -> String {
     graph.node("LessOrEqual", &[&graph.least(squared, 1), &graph.number(squared_radius)])
 }
 
-/// A matrix (n, M) with a row a column, (M, n).
+/// The transpose, (M, n), of a matrix (n, M).
 fn rows(graph: &Graph, matrix: &DMatrix<f64>) -> String {
     graph.constant(&[matrix.ncols(), matrix.nrows()], matrix.iter().copied())
 }
@@ -33,7 +34,7 @@ pub(super) fn write_slope(
 ) -> LearnerOutputs {
     let [z, apart, squared] = differences(graph, &slope.scaled, inputs);
     let (n, m) = slope.scaled.z.shape();
-    // Of the state alone, without its context.
+    // Differences of the state alone, without its context.
     let (apart, moving) = if n > moving_dim {
         let learnt = slope.scaled.z.rows(0, moving_dim).into_owned();
         let learnt = graph.constant(&[1, m, moving_dim], learnt.iter().copied());
@@ -50,7 +51,7 @@ pub(super) fn write_slope(
     let bent = graph.unsqueezed(&graph.node("Mul", &[&h, &along]), 2);
     let bent = graph.sum(&graph.node("Mul", &[&bent, &apart]), 1);
     let constant = graph.constant(&[n], slope.constant.iter().copied());
-    // Columns of Q are rows of its transpose, which multiplies from the right.
+    // The columns of Q are the rows of its transpose, which multiplies from the right.
     let sloped = graph.product(&z, &rows(graph, &slope.matrix));
     let trend = graph.node("Add", &[&sloped, &constant]);
     let along_state = if n > moving_dim { graph.first_columns(&trend, moving_dim) } else { trend };
@@ -90,7 +91,7 @@ pub(super) fn write_direct(
 
 /// g and h of (S3), summed over the terms, (B, M) each.
 fn slopes(graph: &Graph, slope: &SlopeFormula<'_>, dim: usize, (squared, moving): (&str, &str)) -> [String; 2] {
-    // Without any term: zeros of the right shape.
+    // Without terms, zeros of the right shape.
     let mut sums = [graph.times(squared, 0.0), graph.times(squared, 0.0)];
     for &term in &slope.terms {
         let terms = slope_term(graph, term, dim, (squared, moving));

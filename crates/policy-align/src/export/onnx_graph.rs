@@ -10,7 +10,8 @@ const DOUBLE: u64 = 11;
 /// Name of a tensor.
 pub(super) type Tensor = String;
 
-/// A graph of ONNX operators on doubles, made node by node. Names count up, so that the same model gives the same bytes.
+/// A graph of ONNX operators on doubles, built node by node. Names are numbered, so that the same model gives the same
+/// bytes.
 #[derive(Debug, Default)]
 pub(super) struct Graph {
     nodes: RefCell<Message>,
@@ -18,24 +19,24 @@ pub(super) struct Graph {
     made: Cell<usize>,
 }
 
-/// What an output is.
+/// Type of an output.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Output {
     /// (B, n) doubles.
     Vectors(usize),
     /// (B) doubles.
     Numbers,
-    /// (B) truths.
+    /// (B) booleans.
     Truths,
 }
 
 /// Tensors that a learner's graph computes from scaled states.
 pub(super) struct LearnerOutputs {
-    /// Per second, (B, n).
+    /// Actions per second, (B, n).
     pub(super) action: String,
-    /// In the learner's units, (B).
+    /// Potentials in the learner's units, (B).
     pub(super) potential: Option<String>,
-    /// (B).
+    /// Support, (B).
     pub(super) support: String,
 }
 
@@ -45,13 +46,13 @@ impl Graph {
         format!("{what}_{}", self.made.get())
     }
 
-    /// Doubles in rows, of this shape.
+    /// A constant tensor of this shape from doubles in row-major order.
     pub(super) fn constant(&self, shape: &[usize], values: impl IntoIterator<Item = f64>) -> Tensor {
         let bytes: Vec<u8> = values.into_iter().flat_map(f64::to_le_bytes).collect();
         self.tensor(shape, DOUBLE, &bytes)
     }
 
-    /// One double.
+    /// A constant scalar.
     pub(super) fn number(&self, value: f64) -> Tensor {
         self.constant(&[], [value])
     }
@@ -68,14 +69,14 @@ impl Graph {
         name
     }
 
-    /// A node without attributes.
+    /// Adds a node without attributes.
     pub(super) fn node(&self, operator: &str, inputs: &[&str]) -> Tensor {
         let name = self.name("t");
         self.add(operator, inputs, &name, &[]);
         name
     }
 
-    /// Gives a tensor the name of an output.
+    /// Names a tensor as an output.
     pub(super) fn output(&self, tensor: &str, name: &str) {
         self.add("Identity", &[tensor], name, &[]);
     }
@@ -87,14 +88,14 @@ impl Graph {
         self.nodes.replace_with(|nodes| std::mem::take(nodes).message(1, &node));
     }
 
-    /// Sum along an axis, which disappears.
+    /// Sum along an axis, which is removed.
     pub(super) fn sum(&self, tensor: &str, axis: u64) -> Tensor {
         let (axis, name) = (self.axis(axis), self.name("t"));
         self.add("ReduceSum", &[tensor, &axis], &name, &[integer("keepdims", 0)]);
         name
     }
 
-    /// Least number along an axis, which disappears.
+    /// Minimum along an axis, which is removed.
     pub(super) fn least(&self, tensor: &str, axis: u64) -> Tensor {
         let name = self.name("t");
         let axes = Message::default().text(1, "axes").integer(8, axis).integer(20, 7);
@@ -102,23 +103,23 @@ impl Graph {
         name
     }
 
-    /// With a new axis of length 1.
+    /// The tensor with a new axis of length 1.
     pub(super) fn unsqueezed(&self, tensor: &str, axis: u64) -> Tensor {
         self.node("Unsqueeze", &[tensor, &self.axis(axis)])
     }
 
-    /// Rows (B, M) times a matrix (M, n). Not by `MatMul`: onnxruntime joins that with adjacent numbers, which it rounds
-    /// to single precision.
+    /// Rows (B, M) times a matrix (M, n). This avoids `MatMul`, which onnxruntime fuses with adjacent constants that it
+    /// rounds to single precision.
     pub(super) fn product(&self, rows: &str, matrix: &str) -> Tensor {
         self.sum(&self.node("Mul", &[&self.unsqueezed(rows, 2), matrix]), 1)
     }
 
-    /// Times a number.
+    /// A tensor times a number.
     pub(super) fn times(&self, tensor: &str, factor: f64) -> Tensor {
         self.node("Mul", &[tensor, &self.number(factor)])
     }
 
-    /// Matrices (B, n) and (B, p) beside each other.
+    /// Matrices (B, n) and (B, p) joined side by side.
     pub(super) fn beside(&self, left: &str, right: &str) -> Tensor {
         let name = self.name("t");
         self.add("Concat", &[left, right], &name, &[integer("axis", 1)]);
@@ -131,7 +132,7 @@ impl Graph {
         self.node("Slice", &[tensor, &from, &to, &axis])
     }
 
-    /// The graph of inputs: `x`, (B, n), and `c`, (B, p), where there is a context.
+    /// Completes the graph with its inputs: `x`, (B, n), and `c`, (B, p), if there is a context.
     pub(super) fn finished(self, (n, p): (usize, usize), outputs: &[(&str, Output)]) -> Message {
         let graph = self.nodes.into_inner().text(2, "policy").joined(&self.constants.into_inner());
         let graph = graph.message(11, &value("x", DOUBLE, Some(n)));
@@ -147,7 +148,7 @@ impl Graph {
     }
 }
 
-/// An attribute that is a whole number.
+/// An integer attribute.
 fn integer(name: &str, value: u64) -> Message {
     Message::default().text(1, name).integer(3, value).integer(20, 2)
 }

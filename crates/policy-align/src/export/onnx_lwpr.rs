@@ -27,7 +27,7 @@ pub(super) fn write<'a>(graph: &Graph, lwpr: &LwprTables<'a>, scaled: &str) -> L
     let local = graph.node("Add", &[&graph.sum(&graph.node("Mul", &[&apart, &slopes]), 2), &offsets]);
     let total = graph.sum(&weight, 1);
     let support = graph.node("Greater", &[&total, &zero]);
-    // Where nothing takes part, 0 / 1.
+    // If no field takes part, the quotient is 0 / 1.
     let divisor = graph.node("Where", &[&support, &total, &graph.number(1.0)]);
     let value = graph.node("Div", &[&graph.sum(&graph.node("Mul", &[&weight, &local]), 1), &divisor]);
     let off = graph.node("Sub", &[&local, &graph.unsqueezed(&value, 1)]);
@@ -40,7 +40,7 @@ pub(super) fn write<'a>(graph: &Graph, lwpr: &LwprTables<'a>, scaled: &str) -> L
     LearnerOutputs { action: graph.times(&gradient, -lwpr.norm_out), potential: Some(potential), support }
 }
 
-/// w of q, and twice its derivative.
+/// The weight w as a function of q, and twice its derivative.
 fn weight(graph: &Graph, kernel: Kernel, q: &str) -> [String; 2] {
     match kernel {
         Kernel::Gaussian => {

@@ -1,16 +1,16 @@
-/// A message of protocol buffers, written field by field. ONNX is made of them.
+/// A protocol-buffers message, written field by field. ONNX files consist of such messages.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub(super) struct Message(Vec<u8>);
 
 impl Message {
-    /// With a whole number.
+    /// Appends an integer field.
     pub(super) fn integer(mut self, field: u64, value: u64) -> Self {
         self.varint(field << 3);
         self.varint(value);
         self
     }
 
-    /// With bytes, which a text or another message is too.
+    /// Appends bytes; strings and nested messages are also encoded as bytes.
     pub(super) fn bytes(mut self, field: u64, bytes: &[u8]) -> Self {
         self.varint(field << 3 | 2);
         self.varint(bytes.len() as u64);
@@ -26,7 +26,7 @@ impl Message {
         self.bytes(field, &message.0)
     }
 
-    /// With the fields of another message after its own.
+    /// Appends the fields of another message.
     pub(super) fn joined(mut self, other: &Message) -> Self {
         self.0.extend_from_slice(&other.0);
         self
@@ -36,7 +36,7 @@ impl Message {
         self.0
     }
 
-    /// Seven bits a byte, the lowest first; the eighth says that more follow.
+    /// Seven bits per byte, the lowest first; the eighth bit marks that more follow.
     fn varint(&mut self, mut value: u64) {
         while value >= 0x80 {
             self.0.push(value as u8 | 0x80);

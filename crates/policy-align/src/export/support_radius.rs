@@ -5,17 +5,17 @@ use rayon::prelude::*;
 use crate::Model;
 use crate::halton::between;
 
-/// States at which the model's support is evaluated.
+/// Number of states at which the model's support is evaluated.
 const STATES: usize = 1000;
-/// Share of the states within the radius that the model may not know.
+/// Largest share of the states within the radius that the model itself does not support.
 const UNKNOWN: f64 = 0.05;
 
-/// How far from a learnt state a state still counts as known in an exported Gaussian process, squared, in its scaled
-/// coordinates; negative if nothing does.
+/// Squared distance from a learnt state up to which an exported Gaussian process supports a state, in its scaled coordinates;
+/// negative if it supports none.
 ///
-/// The variance that decides in the model itself needs a matrix of the size of all samples squared. What is exported uses
-/// the distance to the nearest learnt state instead: the radius goes as far as 95 % of the states within it, evenly spread over the
-/// model's bounds, are known to the model.
+/// The model itself decides by the variance, which needs a matrix of the squared number of samples. The export uses the distance to
+/// the nearest learnt state instead. The radius is the largest one within which the model supports 95 % of the states, spread
+/// evenly over the model's bounds.
 pub(super) fn squared_radius(model: &Model, scaled: &ScaledStates<'_>) -> f64 {
     let model = Model { chosen_context: crate::model::nowhere(), ..model.clone() };
     let scale: Vec<f64> = model.inputs().map(|channel| channel.scale).collect();

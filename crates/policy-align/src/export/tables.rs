@@ -6,21 +6,22 @@ use super::lwpr_tables::LwprTables;
 use super::support_radius::squared_radius;
 use crate::{Learnt, Model};
 
-/// A policy as tables of numbers, with what every learner's has in common.
+/// A policy as tables of numbers, with the parts that all learners share.
 pub(super) struct Tables<'a> {
-    /// State and context are multiplied by this before the learner's policy is evaluated, the action divided, (n + p).
+    /// Factors by which state and context are multiplied before the learner's policy is evaluated, and by which the action
+    /// is divided, (n + p).
     pub(super) scale: DVector<f64>,
-    /// What counts as known lies between, (n + p).
+    /// Limits of the supported inputs, (n + p).
     pub(super) bounds: Vec<[f64; 2]>,
-    /// n.
+    /// Dimension n of the state.
     pub(super) dim: usize,
-    /// Of the potential, by this.
+    /// Factor of the potential.
     pub(super) per_unit: f64,
     pub(super) learner: LearnerTables<'a>,
 }
 
-/// Parameters of each learner's policy. A state counts as known to a Gaussian process within a squared distance of a learnt
-/// one, in scaled coordinates.
+/// Parameters of each learner's policy. A Gaussian process supports a state within this squared distance of a learnt one,
+/// in scaled coordinates.
 pub(super) enum LearnerTables<'a> {
     Lwpr(LwprTables<'a>),
     Slope(SlopeFormula<'a>, f64),
@@ -43,7 +44,7 @@ impl Tables<'_> {
         Ok(Tables { scale, bounds, dim: model.state.len(), per_unit, learner })
     }
 
-    /// p.
+    /// Dimension p of the context.
     pub(super) fn context_dim(&self) -> usize {
         self.scale.len() - self.dim
     }

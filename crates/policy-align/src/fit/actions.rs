@@ -1,12 +1,12 @@
-//! Policies compared at states that were recorded.
+//! Compares policies at recorded states.
 
 use gp::Rows;
 use nalgebra::DMatrix;
 
-/// States that policies are compared at, at most.
+/// Largest number of states at which policies are compared.
 const STATES: usize = 500;
 
-/// Rows' states, evenly thinned, (n, M).
+/// The rows' states, evenly thinned, (n, M).
 pub(super) fn states(rows: &Rows) -> DMatrix<f64> {
     let every = rows.len().div_ceil(STATES);
     let chosen: Vec<usize> = (0..rows.len()).step_by(every).collect();

@@ -1,4 +1,5 @@
-//! PolicyAlign on what was recorded: rule of integration, bandwidth and receptive fields by held-out movements.
+//! PolicyAlign on recordings: chooses the rule of integration, and the bandwidth and receptive fields by cross-validation over
+//! movements.
 
 use align::{Aligned, Bandwidth, Integration, LwprRegressor, PolicyAlign, PotentialPolicy};
 use gp::Rows;
@@ -18,9 +19,9 @@ use super::progress::Progress;
 use super::recorded_rows::averaged;
 use crate::{Decision, FitError, Prepared, Smoothing, VelocitySource};
 
-/// Positions alone are smoothed if noise makes more than this share of the squared steps.
+/// Positions without recorded velocities are smoothed if noise makes up more than this share of the squared steps.
 const NOISY: f64 = 0.1;
-/// Values of `init_d` tried: one over the squared width of receptive fields, in units of the states' spread.
+/// Candidate values of `init_d`: one over the squared width of receptive fields, in units of the states' spread.
 const INIT_D: [f64; 5] = [1.0, 2.5, 6.0, 15.0, 40.0];
 const BANDWIDTHS: [Bandwidth; 3] = [Bandwidth::Narrow, Bandwidth::Medium, Bandwidth::Wide];
 
@@ -28,16 +29,16 @@ const BANDWIDTHS: [Bandwidth; 3] = [Bandwidth::Narrow, Bandwidth::Medium, Bandwi
 #[derive(Debug, Clone)]
 pub(crate) struct AlignedFit {
     pub(crate) policy: PotentialPolicy,
-    /// Of the responsibilities.
+    /// The σ² of the responsibilities.
     pub(crate) sigma_squared: f64,
     pub(crate) decisions: Vec<Decision>,
-    /// Held-out error of every setting's choice.
+    /// Held-out errors with the chosen settings.
     pub(crate) held_out: HeldOut,
-    /// Root mean square of potentials' disagreement after alignment, over their standard deviation.
+    /// Root mean square of the potentials' disagreement after alignment, over their standard deviation.
     pub(crate) residual: f64,
 }
 
-/// Σ (uᵀπ̂/r − r)² and its comparisons, over held-out samples.
+/// Σ (uᵀπ̂/r − r)² over held-out samples, and sums for comparison.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(crate) struct HeldOut {
     pub(crate) squares: f64,
@@ -45,7 +46,7 @@ pub(crate) struct HeldOut {
     pub(crate) observed: f64,
     /// Σ ‖π̂‖².
     pub(crate) predicted: f64,
-    /// Σ ‖π̂ − π̂_GP‖², of the Gaussian process that knows all movements.
+    /// Σ ‖π̂ − π̂_GP‖², π̂_GP from the Gaussian process learnt from all movements.
     pub(crate) differences: f64,
     pub(crate) samples: usize,
     /// Samples outside the policy's support.
@@ -53,13 +54,13 @@ pub(crate) struct HeldOut {
 }
 
 impl HeldOut {
-    /// E: 0 explains every movement left out, 1 is as good as standing still.
+    /// E: 0 means that left-out movements are predicted exactly, 1 is as good as standing still.
     pub(crate) fn to_choose(self) -> f64 {
         self.squares / self.observed
     }
 
-    /// E′: as a share of the policy, for a policy may be right where constraints hardly let it move. One that is zero everywhere
-    /// misses all.
+    /// E′: the error relative to the policy, since a policy may be right even if constraints hardly let it move. A policy that
+    /// is zero everywhere has the error 1.
     pub(crate) fn to_judge(self) -> f64 {
         let share = self.squares / self.predicted;
         if share.is_finite() { share } else { 1.0 }
@@ -90,14 +91,14 @@ impl Tried {
         self.folds.iter().copied().fold(HeldOut::default(), HeldOut::plus)
     }
 
-    /// Standard error of E over folds.
+    /// Standard error of E over the folds.
     fn standard_error(&self) -> f64 {
         let errors: Vec<f64> = self.folds.iter().map(|fold| fold.to_choose()).collect();
         motion::mean_and_error(&errors).1
     }
 }
 
-/// Positions averaged and smoothed where that is better, and the rule that integrates them.
+/// Positions, averaged and smoothed if that is better, and the rule that integrates them.
 fn integrable(prepared: &Prepared) -> Result<(Demonstrations, Integration, &'static str), FitError> {
     let averaged = averaged(prepared)?;
     let smooth = || SavitzkyGolay::default().smooth(&averaged);
@@ -161,7 +162,7 @@ fn regressor(init_d: f64) -> LwprRegressor {
     LwprRegressor { params: LwprParams { init_d, ..regressor.params }, ..regressor }
 }
 
-/// Every setting in every fold, in parallel.
+/// Evaluates every setting in every fold, in parallel.
 fn grid(
     demonstrations: &Demonstrations,
     integration: Integration,
@@ -200,7 +201,7 @@ fn grid(
         let held: Vec<usize> = folds[fold].clone();
         let others: Vec<_> = (0..demonstrations.n_trajectories()).filter(|k| !held.contains(k)).collect();
         let training = others.iter().map(|&k| demonstrations.trajectories()[k].clone()).collect();
-        // A fold is not everything.
+        // A fold does not contain all movements, so the training set is not empty.
         let training = Demonstrations::new(training)
             .map_err(|error| FitError::Gp(gp::GpError::Cleaning { reason: error.to_string() }))?;
         let align = PolicyAlign { integration, bandwidth: Bandwidth::Fixed(sigma_squared), ..PolicyAlign::default() };
@@ -223,7 +224,8 @@ fn grid(
     Ok(tried)
 }
 
-/// The lowest E; of those within one standard error of it the narrowest bandwidth, then the smallest fields' number.
+/// Among the settings within one standard error of the lowest E, the one with the narrowest bandwidth, then the smallest
+/// `init_d`.
 fn choose(tried: &[Tried]) -> Option<&Tried> {
     let error = |tried: &Tried| {
         let error = tried.total().to_choose();
@@ -235,7 +237,7 @@ fn choose(tried: &[Tried]) -> Option<&Tried> {
     near.min_by(|a, b| a.sigma_squared.total_cmp(&b.sigma_squared).then(a.init_d.total_cmp(&b.init_d))).or(Some(best))
 }
 
-/// Episodes, in random order, dealt out.
+/// Distributes the episodes over the folds in random order.
 fn folds(episodes: usize, options: &FitOptions) -> Vec<Vec<usize>> {
     use rand::seq::SliceRandom;
     let mut order: Vec<usize> = (0..episodes).collect();
@@ -244,9 +246,9 @@ fn folds(episodes: usize, options: &FitOptions) -> Vec<Vec<usize>> {
     (0..count).map(|fold| order.iter().copied().skip(fold).step_by(count).collect()).collect()
 }
 
-/// How a policy predicts the speed of rows along the direction they moved in.
+/// Errors of a policy that predicts the speed of the `test` rows along their direction of motion.
 ///
-/// `reference`: another policy at every row, (n, M), to compare with.
+/// `reference`: another policy at every row, (n, M), for comparison.
 pub(crate) fn held_out(
     policy: &dyn LearntPolicy,
     rows: &Rows,

@@ -1,4 +1,4 @@
-//! The unit of each context, which has none in common with the state.
+//! Chooses the unit of each context, which is unrelated to the state's.
 
 use gp::SlopeGp;
 use rand::SeedableRng;
@@ -8,8 +8,8 @@ use super::options::{FitOptions, LearnerChoice};
 use super::recorded_rows::{cleaning, rows};
 use crate::{FitError, Prepared};
 
-/// The movements with their contexts times factors that make them count as much as predicts left-out movements best. Contexts that
-/// the user scaled stay.
+/// The movements with each context multiplied by the factor that predicts left-out movements best. Contexts that the user scaled
+/// keep their scale.
 pub(super) fn comparable(prepared: &Prepared, options: &FitOptions) -> Result<Prepared, FitError> {
     if options.learner == LearnerChoice::PolicyAlign {
         let names: Vec<&str> = prepared.context.iter().map(|channel| channel.name.as_str()).collect();

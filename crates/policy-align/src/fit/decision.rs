@@ -1,4 +1,4 @@
-//! What a fit decided, and why.
+//! The decisions of a fit, with their reasons.
 
 use gp::{AutoFit, Hypothesis, RowsDropped};
 use prepare::numbers::squared_error;
@@ -12,7 +12,7 @@ pub(super) fn decision(what: &str, value: impl Into<String>, why: impl Into<Stri
     Decision { what: what.to_owned(), value: value.into(), why: why.into(), flag: flag.to_owned() }
 }
 
-/// What was made of samples before a Gaussian process learnt from them; none if each is a row.
+/// How samples became the rows of a Gaussian process; `None` if each sample is a row.
 pub(super) fn rows_decision(readings: &AutoFit) -> Option<Decision> {
     let gp::TrustReport { rows, inducing, rows_dropped, task_space, .. } = readings.slope().report();
     let RowsDropped { averaged, thinned, still, noisy, in_no_stretch, contradicted } = *rows_dropped;
@@ -23,7 +23,7 @@ pub(super) fn rows_decision(readings: &AutoFit) -> Option<Decision> {
     }
     why.extend(inducing.map(|inducing| format!("{inducing} of them represent all")));
     if thinned > 0 {
-        // In a task space a sample has several equations.
+        // In a task space, each sample has several equations.
         let others = if task_space.is_some() { "other equations" } else { "others" };
         why.push(format!("{thinned} {others}, evenly spread, are not learnt from"));
     }
@@ -37,12 +37,12 @@ pub(super) fn rows_decision(readings: &AutoFit) -> Option<Decision> {
     (!why.is_empty()).then(|| decision("rows", rows.to_string(), why.join("; "), flag))
 }
 
-/// How many movements were held together; none if all were.
+/// The samples that were held in memory together; `None` if all were.
 pub(super) fn digests_decision(prepared: &Prepared, digests: &[Digest], readings: &AutoFit) -> Option<Decision> {
     let further: usize = digests.iter().map(|digest| digest.data.samples).sum();
     let rows: usize = digests.iter().map(|digest| digest.indices.len()).sum();
     let why = match readings.slope().report().push {
-        // Stretches are found in samples.
+        // Stretches can only be found in samples.
         Some(_) => format!(
             "constraints push, and only means are kept of {further} further samples, which do not show pushes: they are not learnt from"
         ),
@@ -54,7 +54,7 @@ pub(super) fn digests_decision(prepared: &Prepared, digests: &[Digest], readings
     (!digests.is_empty()).then(|| decision("at once", at_hand, why, "--at-once"))
 }
 
-/// Movements but those kept: PolicyAlign could not align them with these.
+/// All movements except those kept; PolicyAlign could not align them with the others.
 pub(super) fn discarded(kept: &[usize], episodes: &[String]) -> Vec<LeftOut> {
     let others = (0..episodes.len()).filter(|episode| !kept.contains(episode));
     let why = "not aligned: no other movement passes near it";
@@ -84,7 +84,7 @@ pub(super) fn learner_decision(options: &FitOptions, readings: &AutoFit) -> Deci
     }
 }
 
-/// Whether the data show constraints.
+/// Whether the data show constraints, in words.
 fn found(reading: Hypothesis) -> &'static str {
     match reading {
         Hypothesis::Free => "no constraints detected",

@@ -1,4 +1,4 @@
-//! What a fit keeps of recordings that are too large to be held together.
+//! Digests: what a fit keeps of recordings that are too large to be held in memory together.
 
 use motion::{Finding, SampleIndex};
 use nalgebra::DMatrix;
@@ -7,35 +7,34 @@ use serde::{Deserialize, Serialize};
 use crate::stored::sha256;
 use crate::{DataSummary, FitError, Prepared, StateChannel};
 
-/// What is left of some recordings: means of their samples where velocities are noisy (S33), samples themselves where they are not, of these
-/// an evenly spread part if there are many. [`fit_with`](crate::fit_with) learns from it as from whole recordings, but judges recordings by
-/// those at hand alone.
+/// A reduced form of some recordings. If velocities are noisy, it holds means of samples (S33), otherwise samples, evenly thinned if there
+/// are many. [`fit_with`](crate::fit_with) learns from it as from whole recordings, but judges recordings only by those at hand.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Digest {
-    /// Tells the recordings at hand and all options apart.
+    /// Checksum that identifies the recordings at hand and all options.
     pub made_for: String,
-    /// What it is of.
+    /// Summary of the recordings it was made from.
     pub data: DataSummary,
-    /// What the reader found.
+    /// The reader's findings.
     pub findings: Vec<Finding>,
-    /// Channels of the state, then of the context, (n + p), as they were learnt from.
+    /// Channels of the state, then of the context, (n + p), as the learner uses them.
     pub channels: Vec<StateChannel>,
     /// Rows before means were taken.
     pub rows: usize,
-    /// Rows that were left out.
+    /// Number of rows that were left out.
     pub thinned: usize,
-    /// Of each row, (M), in order: its episode, counted among those used, and its sample.
+    /// For each row, (M), in order: its episode, counted among those used, and its sample.
     pub indices: Vec<(usize, usize)>,
     /// Scaled states with their contexts, (n + p, M), column after column.
     pub states: Vec<f64>,
     /// Velocities, (n, M), in scaled units of the state per second.
     pub velocities: Vec<f64>,
-    /// Of velocities along each axis, (M); none if they are certain.
+    /// Variances of velocities along each axis, (M); `None` if velocities are certain.
     pub variances: Option<Vec<f64>>,
 }
 
-/// Tells recordings at hand apart: what digests that are learnt from with them begin with.
+/// Checksum of the recordings at hand, with which [`Digest::made_for`] begins.
 pub(crate) fn made_beside(prepared: &Prepared) -> String {
     let Prepared { episodes, state, context, velocities, averaged, .. } = prepared;
     let samples = prepared.demonstrations.n_samples();
@@ -43,7 +42,7 @@ pub(crate) fn made_beside(prepared: &Prepared) -> String {
 }
 
 impl Digest {
-    /// Whether the numbers are as many as they should be, and in order.
+    /// Whether the arrays have consistent lengths and the indices are in range and in order.
     fn is_sound(&self, dim: usize) -> bool {
         let count = self.indices.len();
         let variances = self.variances.as_ref().map_or(count, Vec::len);
@@ -54,7 +53,7 @@ impl Digest {
             && self.thinned.checked_add(count).is_some_and(|rows| rows <= self.rows)
     }
 
-    /// The rows of all of these in the units of `prepared`; trajectories count on.
+    /// The rows of all digests in the units of `prepared`; trajectories are numbered consecutively.
     fn joined(digests: &[Digest], prepared: &Prepared) -> Result<gp::Rows, FitError> {
         let channels: Vec<&StateChannel> = prepared.state.iter().chain(&prepared.context).collect();
         let (width, dim) = (channels.len(), prepared.state.len());
@@ -73,7 +72,7 @@ impl Digest {
             };
             states.extend(scaled(&digest.states, width));
             velocities.extend(scaled(&digest.velocities, dim));
-            // Noise along an axis, on average over axes.
+            // Noise along an axis, averaged over the axes.
             let factor = factors[..dim].iter().map(|factor| factor * factor).sum::<f64>() / dim as f64;
             variances.extend(digest.variances.iter().flatten().map(|variance| variance * factor));
             let index = |&(episode, sample): &(usize, usize)| SampleIndex { trajectory: episodes + episode, sample };
@@ -93,7 +92,7 @@ impl Digest {
     }
 }
 
-/// Rows at hand, and those of digests after them.
+/// The rows at hand, followed by those of the digests.
 pub(super) fn with_digests(rows: gp::Rows, prepared: &Prepared, digests: &[Digest]) -> Result<gp::Rows, FitError> {
     if digests.is_empty() {
         return Ok(rows);
@@ -101,7 +100,7 @@ pub(super) fn with_digests(rows: gp::Rows, prepared: &Prepared, digests: &[Diges
     let further = Digest::joined(digests, prepared)?;
     let further = match (rows.variances(), further.variances()) {
         (Some(_), Some(_)) | (None, None) => further,
-        // Other units decided otherwise on the noise.
+        // In other units, the decision on the noise was different.
         (None, Some(_)) => further.with_certain_velocities(),
         (Some(own), None) => {
             let usual = motion::upper_median(own.to_vec()).unwrap_or(0.0);
@@ -114,7 +113,7 @@ pub(super) fn with_digests(rows: gp::Rows, prepared: &Prepared, digests: &[Diges
     Ok(rows.with_further(further, samples, thinned)?)
 }
 
-/// Channels whose ranges hold what digests were made of, too: of the state, or of the context after `before` others.
+/// Channels with ranges widened to include the digests' data: those of the state, or those of the context after `before` others.
 pub(super) fn widened(channels: &[StateChannel], before: usize, digests: &[Digest]) -> Vec<StateChannel> {
     let mut channels = channels.to_vec();
     for digest in digests.iter().filter(|digest| !digest.indices.is_empty()) {

@@ -9,18 +9,18 @@ use rand_chacha::ChaCha8Rng;
 
 use super::actions::{spread, states};
 
-/// How halves are learnt from: rows at most that the whole was learnt from, and the seed of its choices.
+/// Limits for learning halves: the largest number of rows of the whole fit, and the random seed.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Limits {
     pub(super) max_rows: usize,
     pub(super) seed: u64,
 }
 
-/// Σ‖π̂_even − π̂_odd‖² over Σ‖π̂ − mean π̂‖² at the rows' states, of the slope policies that every other movement alone
-/// would give, or both halves of a single one; none if halves are too few to learn from.
+/// Σ‖π̂_even − π̂_odd‖² over Σ‖π̂ − mean π̂‖² at the rows' states. The two slope policies are learnt from every other movement and from
+/// the rest, or from both halves of a single movement. `None` if the halves have too few data.
 ///
-/// The error to expect of many movements is a quarter of it at most, if each half has twice the error of the whole and the errors of both
-/// have nothing to do with each other. Of one or two movements all of it is expected. What both halves lack, it cannot detect.
+/// With many movements the expected error is at most a quarter of this, if each half has twice the error of the whole and the two errors
+/// are independent. With one or two movements, the expected error is all of it. Errors that both halves share go undetected.
 pub(super) fn of_slope(readings: &AutoFit, rows: &Rows, limits: Limits) -> Option<f64> {
     let report = readings.slope().report();
     let curl_test = if report.model == ModelKind::Potential { CurlTest::AssumePotential } else { CurlTest::Fit };
@@ -37,7 +37,7 @@ pub(super) fn of_slope(readings: &AutoFit, rows: &Rows, limits: Limits) -> Optio
         ..SlopeGp::default()
     };
     let learn = |rows: &Rows| gp.fit(rows, &mut ChaCha8Rng::seed_from_u64(limits.seed));
-    // Stretches are found on samples, all else on their means.
+    // Stretches are found on samples; everything else uses their means.
     let with_spaces = |spaces| rows.clone().with_task_spaces(spaces).map(Cow::Owned);
     let learnt_from = match report.task_space {
         Some(space) => with_spaces(vec![rows.task_spaces()[space].clone()]).ok()?,
@@ -50,7 +50,7 @@ pub(super) fn of_slope(readings: &AutoFit, rows: &Rows, limits: Limits) -> Optio
     disagreement(readings.slope(), rows, &halves, &learn)
 }
 
-/// The same of direct policies.
+/// As [`of_slope`], for direct policies.
 pub(super) fn of_direct(readings: &AutoFit, rows: &Rows, limits: Limits) -> Option<f64> {
     let gp = DirectGp {
         families: vec![readings.direct().family()],
@@ -62,14 +62,14 @@ pub(super) fn of_direct(readings: &AutoFit, rows: &Rows, limits: Limits) -> Opti
     of_means((readings, readings.direct()), rows, &learn)
 }
 
-/// Samples of the only movement, if there is one alone.
+/// Number of samples of the movement if there is only one.
 fn only_movement(readings: &AutoFit, rows: &Rows) -> Option<usize> {
     let (first, last) = (rows.indices().first()?, rows.indices().last()?);
     let alone = readings.numbers().grouping == Grouping::BlocksOfTime && first.trajectory == last.trajectory;
     alone.then_some(last.sample + 1)
 }
 
-/// Of policies that are learnt from means.
+/// Disagreement of policies that are learnt from means.
 fn of_means<P: Policy + Send>(
     (readings, whole): (&AutoFit, &dyn Policy),
     rows: &Rows,
@@ -79,13 +79,13 @@ fn of_means<P: Policy + Send>(
     let halves = if trajectory(rows.indices().first()) == trajectory(rows.indices().last()) {
         halves(readings, &rows.averaged())
     } else {
-        // Means are of one movement each. All of them would take as much memory again as the rows.
+        // Each mean is of one movement. All means at once would take as much memory again as the rows.
         [false, true].map(|odd| rows.without(|trajectory, _| (trajectory % 2 == 1) != odd).averaged().into_owned())
     };
     disagreement(whole, rows, &halves, learn)
 }
 
-/// Every other movement and the others, or both halves of a single one.
+/// Every other movement and the rest, or both halves of a single one.
 fn halves(readings: &AutoFit, rows: &Rows) -> [Rows; 2] {
     let middle = only_movement(readings, rows).map(|samples| samples / 2);
     let is_odd = |trajectory: usize, sample: usize| middle.map_or(trajectory % 2 == 1, |middle| sample >= middle);

@@ -1,4 +1,4 @@
-//! A robot's mass matrix as the metric in which constraints are at right angles, where movements bear it out.
+//! A robot's mass matrix as the metric in which constraints project orthogonally, if the movements support it.
 
 use gp::{AutoFit, Rows};
 use kinematics::{KinematicsError, RobotModel, Workspace};
@@ -11,14 +11,14 @@ use super::{FitOptions, learn};
 use crate::channel_joints::{ChannelJoints, scales_of_joints, unscaled};
 use crate::{FitError, Prepared};
 
-/// What was learnt in the metric of inertia.
+/// The result of learning in the metric of inertia.
 pub(super) struct Weighed {
     pub(super) rows: Rows,
     pub(super) readings: AutoFit,
     pub(super) decision: Decision,
 }
 
-/// Learns in the metric of the robot's mass matrix; none if there is no robot, or left-out movements are not predicted better so.
+/// Learns in the metric of the robot's mass matrix; `None` without a robot, or if left-out movements are not predicted better.
 pub(super) fn weighed(
     prepared: &Prepared,
     rows: &Rows,
@@ -51,8 +51,8 @@ pub(super) fn weighed(
     Ok(Some(Weighed { rows, readings, decision }))
 }
 
-/// M(q)u of every row, (n, M), with other joints than the recorded ones at zero, in the channels' scaled units: as S⁻¹M(q)S⁻¹u with
-/// the scales S.
+/// M(q)u of every row, (n, M), in the channels' scaled units: S⁻¹M(q)S⁻¹u with the scales S. Joints that were not recorded are at
+/// zero.
 fn momenta(
     robot: &RobotModel,
     joints: &ChannelJoints,

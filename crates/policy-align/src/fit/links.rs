@@ -1,4 +1,4 @@
-//! A robot's last links as spaces in which constraints may be constant: (S40).
+//! A robot's last links as task spaces in which constraints may be constant: (S40).
 
 use gp::{AutoFit, Rows};
 use kinematics::RobotModel;
@@ -10,11 +10,11 @@ use crate::channel_joints::{scales_of_joints, unscaled};
 use crate::named::TaskLinks;
 use crate::{FitError, Prepared};
 
-/// What the spaces of a robot's links are called.
+/// Names of the task spaces of a robot's links.
 pub(super) struct LinkNames(Vec<String>);
 
 impl LinkNames {
-    /// Rows with the spaces of the links of the robot given, if any, and their names.
+    /// Adds to the rows the task spaces of the given robot's links, if any; also returns the spaces' names.
     pub(super) fn with_spaces(
         rows: Rows,
         prepared: &Prepared,
@@ -31,7 +31,7 @@ impl LinkNames {
         Ok((rows.with_task_spaces(spaces)?, LinkNames(names)))
     }
 
-    /// What was learnt from, where that is the constraints of a link.
+    /// The decision that constraints act on a link, if the fit used that.
     pub(super) fn decision(&self, readings: &AutoFit) -> Option<Decision> {
         let report = readings.slope().report();
         let name = self.0.get(report.task_space?)?;

@@ -37,8 +37,8 @@ use decision::{digests_decision, discarded, learner_decision, rows_decision};
 use digest::{widened, with_digests};
 use links::LinkNames;
 
-/// Learns a policy. The same seed gives the same bits at any number of threads. The model names neither files nor the time,
-/// which only the caller knows.
+/// Learns a policy. The same seed gives the same bits with any number of threads. The model contains neither file names nor the time, which
+/// only the caller knows.
 ///
 /// # Errors
 /// [`FitError`]: options out of range, too few movements for the learner, or [`FitError::Cancelled`].
@@ -46,12 +46,12 @@ pub fn fit(prepared: &Prepared, options: &FitOptions, progress: &mut Progress<'_
     fit_with(prepared, &[], options, progress)
 }
 
-/// Learns a policy from these movements and from digests of further ones, in their order: Gaussian processes learn from all, whatever
-/// takes whole movements (constraints that push, the verdict's findings) from those at hand.
+/// Learns a policy from these movements and from digests of further ones, in their order. Gaussian processes learn from all of them; steps
+/// that need whole movements (constraints that push, the verdict's findings) use only those at hand.
 ///
 /// # Errors
-/// As [`fit()`], and [`FitError::Digest`] for digests that are damaged or do not belong together, and where a robot or PolicyAlign asks for
-/// whole movements.
+/// As [`fit()`], and [`FitError::Digest`] if digests are damaged or do not belong together, or if a robot or PolicyAlign requires whole
+/// movements.
 pub fn fit_with(
     prepared: &Prepared,
     digests: &[Digest],
@@ -114,7 +114,7 @@ pub fn fit_with(
     let policy = policy(options, &readings, aligned.as_ref());
     let mut findings = prepared.findings.clone();
     for finding in digests.iter().flat_map(|digest| &digest.findings) {
-        // Every file says the same of its columns.
+        // Files with the same columns yield the same findings.
         if !findings.contains(finding) {
             findings.push(finding.clone());
         }
@@ -138,7 +138,7 @@ pub fn fit_with(
         learner: options.learner,
         given: options.reading,
     });
-    // With a robot's inertia, parts along a movement are not lengths.
+    // In the metric of a robot's inertia, components along a movement are not lengths.
     let predicted = if rows.momenta().is_none() { predicted(&readings, options.learner) } else { vec![] };
     let not_aligned = aligned.as_ref().and_then(|aligned| aligned.policy.kept());
     let not_aligned = not_aligned.map_or_else(Vec::new, |kept| discarded(kept, &prepared.episodes));
@@ -167,7 +167,7 @@ fn learn(rows: &gp::Rows, options: &FitOptions) -> Result<AutoFit, FitError> {
     Ok(options.gaussian_processes().fit(rows, &mut ChaCha8Rng::seed_from_u64(options.seed))?)
 }
 
-/// Whether the Gaussian process's policy, beside PolicyAlign or instead of it, is the slope GP's.
+/// Whether the Gaussian process's policy is that of the slope GP, with PolicyAlign or without.
 fn takes_slope(readings: &AutoFit, learner: LearnerChoice) -> bool {
     match learner {
         LearnerChoice::Slope => true,
@@ -176,14 +176,14 @@ fn takes_slope(readings: &AutoFit, learner: LearnerChoice) -> bool {
     }
 }
 
-/// The plane that no movement leaves, where one direction is not seen.
+/// The plane that contains all movements, if one direction was not observed.
 fn plane(prepared: &Prepared, numbers: &TrustNumbers) -> Option<Finding> {
     let unseen = numbers.direction_coverage < TrustNumbers::GOOD_COVERAGE;
     let plane = unseen.then(|| CommonPlane::of(&prepared.demonstrations, &prepared.state)).flatten()?;
     Some(plane.finding(&prepared.state))
 }
 
-/// The policy handed out.
+/// The policy that the model contains.
 fn policy<'a>(options: &FitOptions, readings: &'a AutoFit, aligned: Option<&'a AlignedFit>) -> &'a dyn Policy {
     match aligned {
         Some(aligned) => &aligned.policy,
@@ -213,7 +213,7 @@ fn numbers(
         if takes_slope { halves::of_slope(readings, rows, limits) } else { halves::of_direct(readings, rows, limits) };
     let expected = if takes_slope { report.expected_nupe } else { readings.expected_nupe() };
     let direction_coverage = of.least_seen.share * of.least_seen.direction.len() as f64;
-    // Parts of the same movements test how a policy goes on along them, not how it is elsewhere. Halves show that, where movements go in
+    // Parts of the same movement test how a policy continues along it, not how it behaves elsewhere. Halves test that if movements go in
     // all directions.
     let own = match of.grouping {
         Grouping::BlocksOfTime if direction_coverage < TrustNumbers::GOOD_COVERAGE => expected.max(1.0),
@@ -241,7 +241,7 @@ fn numbers(
         held_out_error_direct: of.a_d,
         direct_error: of.p_d,
         gap: of.gap,
-        // How far PolicyAlign's policy is from one that is as far from the truth: together at most.
+        // An upper bound: PolicyAlign's distance from the Gaussian process's policy plus that policy's distance from the truth.
         expected_error: aligned_numbers
             .as_ref()
             .map_or(own, |aligned| (aligned.difference.sqrt() + own.sqrt()).powi(2)),
@@ -271,7 +271,7 @@ fn unknown(readings: &AutoFit, prepared: &Prepared, rows: &gp::Rows) -> f64 {
     share_unknown(readings, &prepared.demonstrations, variance).unwrap_or(1.0)
 }
 
-/// What the Gaussian process predicts of left-out movements.
+/// Predictions of the Gaussian process on left-out movements.
 fn predicted(readings: &AutoFit, learner: LearnerChoice) -> Vec<PredictedSpeed> {
     let takes_slope = takes_slope(readings, learner);
     let speed = |row: &LeftOutRow| {
@@ -281,7 +281,7 @@ fn predicted(readings: &AutoFit, learner: LearnerChoice) -> Vec<PredictedSpeed> 
     readings.left_out_rows().iter().filter_map(speed).collect()
 }
 
-/// E′ of every movement at hand left out, as if it were as fast as all are.
+/// Left-out error E′ of every movement at hand, scaled as if its speed were the average of all movements.
 fn episode_errors(readings: &AutoFit, takes_slope: bool, at_hand: usize) -> Vec<(usize, f64)> {
     let left_out = readings.left_out();
     let observed = left_out.iter().map(|errors| errors.seen).sum::<f64>() / left_out.len() as f64;

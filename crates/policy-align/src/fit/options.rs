@@ -4,31 +4,32 @@ use serde::{Deserialize, Serialize};
 
 use crate::FitError;
 
-/// Share of the rows whose marginal likelihood sets amplitudes.
+/// Share of `max_rows` that determines amplitudes by marginal likelihood.
 const HYPER_SHARE: f64 = 0.5;
 
-/// Options of learning; by default everything is decided from the data.
+/// Options for learning; by default everything is chosen from the data.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FitOptions {
     /// `--learner`.
     pub learner: LearnerChoice,
-    /// A reading given by the user, which overrides that of the data (`--reading`).
+    /// Reading given by the user, which overrides that of the data (`--reading`).
     pub reading: Option<Hypothesis>,
-    /// For PolicyAlign; none: chosen by held-out movements (`--bandwidth`).
+    /// Bandwidth for PolicyAlign; `None`: chosen by cross-validation (`--bandwidth`).
     pub bandwidth: Option<Bandwidth>,
-    /// For PolicyAlign; none: chosen by held-out movements (`--init-d`).
+    /// `init_d` for PolicyAlign; `None`: chosen by cross-validation (`--init-d`).
     pub init_d: Option<f64>,
     /// Folds of the cross-validation over episodes (`--folds`).
     pub folds: usize,
-    /// Seed of every random choice (`--seed`).
+    /// Random seed (`--seed`).
     pub seed: u64,
-    /// Rows on which models are selected, at most, spread in time along the movements (`--max-rows`). If more are recorded and `inducing` is
-    /// not 0, the policy may be learnt from more.
+    /// Largest number of rows for model selection, spread in time along the movements (`--max-rows`). If there are more rows and `inducing`
+    /// is not 0, the policy may be learnt from more.
     pub max_rows: usize,
-    /// Inducing rows, which represent all rows if more than `max_rows` are recorded; 0: only `max_rows` are learnt from (`--inducing`).
+    /// Number of inducing rows, which represent all rows if there are more than `max_rows`; 0: the policy is learnt from `max_rows` alone
+    /// (`--inducing`).
     pub inducing: usize,
-    /// Text of a URDF whose joints are the channels (`--robot`): constraints of its last links are tried (S40), and its mass matrix as their
-    /// metric.
+    /// Text of a URDF whose joints are the channels (`--robot`). The fit tries constraints on its last links (S40), and its mass matrix as
+    /// the metric.
     pub robot: Option<String>,
 }
 
@@ -36,7 +37,7 @@ pub struct FitOptions {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum LearnerChoice {
-    /// Slope GP or direct GP, as the data say.
+    /// Slope GP or direct GP, chosen from the data.
     #[default]
     Auto,
     /// Aligned potentials and LWPR.
@@ -64,12 +65,12 @@ impl Default for FitOptions {
 }
 
 impl FitOptions {
-    /// The slope GP and the direct GP that [`fit`](crate::fit()) lets learn from rows, and chooses between.
+    /// The slope GP and the direct GP between which [`fit`](crate::fit()) chooses.
     pub fn gaussian_processes(&self) -> AutoGp {
         let &FitOptions { max_rows, inducing, reading, .. } = self;
         let hyper_rows = (max_rows as f64 * HYPER_SHARE) as usize;
         AutoGp {
-            front_end: FrontEnd::Velocities, // the rows are made already
+            front_end: FrontEnd::Velocities, // the rows exist already
             slope: SlopeGp {
                 max_rows,
                 hyper_rows,
@@ -82,7 +83,7 @@ impl FitOptions {
         }
     }
 
-    /// The option that asks for whole recordings, if one does, as a flag: then there can be no [`Digest`](crate::Digest).
+    /// The flag of the option that needs whole recordings, if there is one. Then a [`Digest`](crate::Digest) cannot be used.
     pub fn needs_whole_recordings(&self) -> Option<&'static str> {
         match (self.learner, &self.robot) {
             (LearnerChoice::PolicyAlign, _) => Some("--learner policy-align"),

@@ -4,7 +4,7 @@ use crate::FitError;
 
 /// Progress of a fit, and its cancellation.
 pub struct Progress<'a> {
-    /// Set to cancel the fit; checked between steps.
+    /// Flag that cancels the fit; checked between steps.
     pub cancelled: &'a AtomicBool,
     /// Called at the beginning of every step.
     pub report: &'a mut dyn FnMut(Step),
@@ -13,11 +13,11 @@ pub struct Progress<'a> {
 /// A step of a fit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Step {
-    /// Steps done.
+    /// Number of completed steps.
     pub done: usize,
-    /// Of so many.
+    /// Total number of steps.
     pub of: usize,
-    /// The step that begins.
+    /// Description of the step that begins.
     pub what: &'static str,
 }
 

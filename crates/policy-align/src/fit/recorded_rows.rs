@@ -4,7 +4,7 @@ use prepare::{thinned, with_less_noise, with_slopes};
 
 use crate::{Prepared, VelocitySource};
 
-/// The rows that the Gaussian processes learn from.
+/// The rows from which the Gaussian processes learn.
 pub(crate) fn rows(prepared: &Prepared) -> Result<Rows, GpError> {
     let demonstrations = averaged(prepared)?;
     let demonstrations = match prepared.velocities {
@@ -14,7 +14,8 @@ pub(crate) fn rows(prepared: &Prepared) -> Result<Rows, GpError> {
     front_end(prepared.velocities).rows(&demonstrations)
 }
 
-/// The rows that constraints are found on: where velocities were recorded with noise, slopes of the positions if these have less.
+/// The rows for estimating constraints. If recorded velocities are noisy, slopes of the positions are used if these have less
+/// noise.
 pub(crate) fn least_noisy_rows(prepared: &Prepared) -> Result<Rows, GpError> {
     let VelocitySource::Noisy(variance) = prepared.velocities else { return rows(prepared) };
     match with_less_noise(&averaged(prepared)?, variance).map_err(|error| cleaning(&error))? {
@@ -23,7 +24,7 @@ pub(crate) fn least_noisy_rows(prepared: &Prepared) -> Result<Rows, GpError> {
     }
 }
 
-/// The front end that makes rows of a Gaussian process from what was recorded.
+/// The front end that converts recordings to rows of a Gaussian process.
 fn front_end(velocities: VelocitySource) -> FrontEnd {
     match velocities {
         VelocitySource::Recorded | VelocitySource::PositionsAsRequested => FrontEnd::Velocities,
@@ -33,7 +34,7 @@ fn front_end(velocities: VelocitySource) -> FrontEnd {
     }
 }
 
-/// The movements with samples averaged as decided.
+/// The movements with samples averaged as `prepare` decided.
 pub(crate) fn averaged(prepared: &Prepared) -> Result<Demonstrations, GpError> {
     thinned(&prepared.demonstrations, prepared.averaged).map_err(|error| cleaning(&error))
 }

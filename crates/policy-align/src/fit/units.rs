@@ -1,4 +1,4 @@
-//! The unit of each channel, learnt where constraints tell of another than the recorded one.
+//! Learns the unit of each channel if the constraints imply another than the recorded one.
 
 use gp::{AutoFit, Hypothesis, LearntScales, PushTest, Rows, SlopeGp};
 use motion::Decision;
@@ -11,7 +11,7 @@ use super::decision::decision;
 use super::options::{FitOptions, LearnerChoice};
 use crate::{FitError, Prepared};
 
-/// The movements in the units that the constraints tell of; none if the recorded ones are as good, or the user chose one.
+/// The movements in the units implied by the constraints; `None` if the recorded units are as good or the user chose one.
 pub(super) fn learnt(
     prepared: &Prepared,
     rows: &Rows,
@@ -22,7 +22,7 @@ pub(super) fn learnt(
     let reading = options.reading.unwrap_or(readings.reading());
     let constrained = !matches!(reading, Hypothesis::Free | Hypothesis::TooFew);
     let report = readings.slope().report();
-    // A robot's joints have the units in which its links keep to constraints.
+    // With a robot, the joints' own units are those in which its links keep constraints.
     if chosen
         || report.task_space.is_some()
         || !constrained
@@ -44,18 +44,18 @@ pub(super) fn learnt(
     Ok(Some(rescaled))
 }
 
-/// Rows up to which a fit is kept while another is made.
+/// Largest number of rows for which a fit is kept while another is made.
 const KEPT: usize = 20_000;
 
-/// The fit of the `recorded` units, made already, or of those `learnt`, whichever predicts left-out movements better: the search for
-/// units knows less than a whole fit, and constraints that turn mislead it.
+/// The existing fit in the `recorded` units or a new one in the `learnt` units, whichever predicts left-out movements better. The
+/// search for units uses less information than a whole fit, and rotating constraints mislead it.
 pub(super) fn better<'p>(
     (recorded, learnt): (&'p Prepared, &'p Prepared),
     (rows, readings): (Rows, AutoFit),
     fit: impl Fn(&Prepared) -> Result<(Rows, AutoFit), FitError>,
 ) -> Result<(&'p Prepared, Rows, AutoFit), FitError> {
     let as_recorded = readings.slope().report().r_squared;
-    // Two large ones would take twice the memory.
+    // Two large fits would take twice the memory.
     let kept = (rows.len() <= KEPT).then_some((rows, readings));
     let (rows, readings) = fit(learnt)?;
     if readings.slope().report().r_squared > as_recorded {
@@ -66,7 +66,7 @@ pub(super) fn better<'p>(
     Ok((recorded, rows, readings))
 }
 
-/// With four significant digits, so that it can be typed.
+/// Rounds to four significant digits, so that a user can type the factor.
 fn in_short(factor: f64) -> f64 {
     format!("{factor:.3e}").parse().expect("a number that was printed")
 }

@@ -10,25 +10,26 @@ use crate::{
     prepare, trim_still,
 };
 
-/// Makes digests of further files and pieces, read and prepared like the recordings at hand. It is small, so that other machines can have it.
+/// Makes digests of further files and pieces, which it reads and prepares like the recordings at hand. It is small, so that it can be sent
+/// to other machines.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Digester {
     reading: ReadOptions,
     /// Whether samples at rest at either end are removed.
     trim: bool,
     preparing: PrepareOptions,
-    /// At hand: of the state, then of the context.
+    /// Channels of the recordings at hand: the state, then the context.
     channels: Vec<StateChannel>,
     velocities: VelocitySource,
     averaged: usize,
-    /// How velocities came about, in words.
+    /// Source of the velocities, in words.
     decision: String,
     made_for: String,
 }
 
 impl Digester {
-    /// For files like those that these recordings at hand were read from with `reading`, `trim`med of samples at rest at either end or not,
-    /// and prepared with `preparing`.
+    /// A digester for files like those of the recordings at hand. These were read with `reading`, `trim`med of samples at rest at either
+    /// end or not, and prepared with `preparing`.
     pub fn new(prepared: &Prepared, preparing: &PrepareOptions, (reading, trim): (&ReadOptions, bool)) -> Digester {
         let channels: Vec<StateChannel> = prepared.state.iter().chain(&prepared.context).cloned().collect();
         let (scale, context) = (StateChannel::factors(&channels), ContextUse::of(&prepared.context));
@@ -46,13 +47,13 @@ impl Digester {
         }
     }
 
-    /// What digests for the same fit have in common.
+    /// The identifier that digests for the same fit share.
     pub(super) fn made_for(&self) -> &str {
         &self.made_for
     }
 
-    /// Reads a file or piece and makes its digest; holds it alone. Calls `progress` with the number of bytes read since the last call. The bits
-    /// depend on nothing but this piece, its share of rows and the recordings at hand.
+    /// Reads a file or piece, which is held in memory alone, and makes its digest. Calls `progress` with the number of bytes read since the
+    /// last call. The result depends bit for bit only on this piece, its share of rows and the recordings at hand.
     ///
     /// # Errors
     /// [`PartError`], which names the file.
@@ -66,7 +67,7 @@ impl Digester {
             Err(ReadError::Empty(fault)) => self.empty(vec![LeftOut { episode: name.clone(), why: fault.what }]),
             Err(error) => return Err(error.into()),
         };
-        // A file is listed once.
+        // A file with several pieces is listed once.
         if piece.is_first() && piece.path.is_file() {
             let summary = FileSummary::of(&piece.path);
             let summary = summary.map_err(|error| PartError::File { file: name, reason: error.to_string() })?;
@@ -75,7 +76,7 @@ impl Digester {
         Ok(digest)
     }
 
-    /// A digest of at most so many rows.
+    /// A digest of at most `most` rows.
     fn digest(&self, mut recordings: Recordings, most: usize) -> Result<Digest, DigestError> {
         if self.trim {
             trim_still(&mut recordings);
@@ -91,7 +92,7 @@ impl Digester {
         };
         let channels: Vec<StateChannel> = prepared.state.iter().chain(&prepared.context).cloned().collect();
         self.require_alike(&channels, how(&prepared))?;
-        // As noisy as those at hand: few movements tell less of noise.
+        // Assumes the noise of the recordings at hand: few movements do not determine it well.
         let prepared = Prepared { velocities: self.velocities, averaged: self.averaged, ..prepared };
         let rows = rows(&prepared)?;
         let means = rows.averaged();
@@ -110,7 +111,7 @@ impl Digester {
         })
     }
 
-    /// Of what cannot be learnt from.
+    /// The digest of recordings without usable data.
     fn empty(&self, left_out: Vec<LeftOut>) -> Digest {
         let data = DataSummary { files: vec![], episodes: 0, samples: 0, longest: 0.0, speed: 0.0, left_out };
         Digest {
@@ -138,7 +139,7 @@ impl Digester {
         if decision != self.decision {
             return differ("velocities", decision, self.decision.clone());
         }
-        // A goal that is the same in all files at hand looks like a state that never moves.
+        // A goal that is the same in all files at hand looks like a constant channel of the state.
         let range = |of: &StateChannel| {
             if of.low == of.high { of.low.to_string() } else { format!("{} … {}", of.low, of.high) }
         };
@@ -150,7 +151,7 @@ impl Digester {
     }
 }
 
-/// How velocities came about, in words.
+/// The source of the velocities, in words.
 fn how(prepared: &Prepared) -> String {
     let decision = prepared.decisions.iter().find(|decision| decision.what == "velocities");
     decision.map_or_else(String::new, |decision| decision.value.clone())

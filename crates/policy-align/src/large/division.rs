@@ -1,47 +1,48 @@
-//! Which files, and which pieces of large ones, are read at once.
+//! Decides which files, and which pieces of large ones, are read at once.
 
 use std::path::PathBuf;
 
 use demo_io::{Piece, ReadError, ReadOptions, pieces_of};
 
-/// Rows of all digests together, about: so many in seven dimensions take 60 MB.
+/// Approximate number of rows of all digests together; in seven dimensions they take 60 MB.
 const ROWS: u64 = 500_000;
 
-/// Pieces that have the size of what is read at once: enough to be evenly spread over a file, and small beside it on each thread.
+/// Number of the largest pieces that fit into the size read at once: enough to be spread evenly over a file, and each small compared with
+/// that size on every thread.
 const PIECES: u64 = 16;
 
-/// Bytes that a piece may always have: the beginning of the file is looked at with each.
+/// The limit on a piece's size is at least this, in bytes: the beginning of the file is read with each piece.
 const SMALLEST: u64 = 256 << 10;
 
-/// Files that are read at once, and those of which digests are made; of large files pieces.
+/// The files that are read at once, and those that are reduced to digests. Large files are divided into pieces.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Division {
-    /// Evenly spread over all; all of them if they are small enough.
+    /// Evenly spread over all files, or all of them if they are small enough.
     pub at_once: Vec<Piece>,
-    /// The others, in their order.
+    /// The other files and pieces, in their order.
     pub further: Vec<FurtherPiece>,
 }
 
-/// A file, or a piece of one, of which a digest is made.
+/// A file, or a piece of one, that is reduced to a digest.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FurtherPiece {
-    /// Its place among them.
+    /// Its index among the further pieces.
     pub at: usize,
-    /// Which it is.
+    /// The file or piece.
     pub piece: Piece,
-    /// Its size.
+    /// Its size in bytes.
     pub bytes: u64,
-    /// Rows of its digest at most, by its share of all bytes.
+    /// Largest number of rows of its digest, proportional to its share of all bytes.
     pub rows: usize,
 }
 
 impl Division {
-    /// Bytes of files that are read at once, unless told otherwise: four million samples in the plane as text.
+    /// Default size of the files read at once, in bytes: about four million samples in the plane as text.
     pub const AT_ONCE: u64 = 256_000_000;
     /// The word for all files.
     pub const ALL: &str = "all";
 
-    /// A size as users write it: "256MB", "1.5 GB", or "all".
+    /// Parses a size as users write it: "256MB", "1.5 GB", or "all".
     pub fn bytes(text: &str) -> Option<u64> {
         let text = text.to_lowercase();
         if text == Self::ALL {
@@ -58,7 +59,7 @@ impl Division {
         self.further.iter().skip(this.saturating_sub(1)).step_by(of.max(1)).cloned().collect()
     }
 
-    /// Whether files have at most so many bytes together.
+    /// Whether the files have at most `most_bytes` together.
     ///
     /// # Errors
     /// [`ReadError`] for a folder that cannot be read.
@@ -66,19 +67,19 @@ impl Division {
         Ok(bytes_of_all(&listed(files)?) <= most_bytes)
     }
 
-    /// All files at once.
+    /// A division that reads all files at once.
     pub fn none(files: &[PathBuf]) -> Division {
         let whole = |path| Piece::whole(path, files.len() > 1);
         Division { at_once: files.iter().map(whole).collect(), further: vec![] }
     }
 
-    /// Every so many of the files, so that they have at most so many bytes together; the first alone if none is smaller. Of folders that
-    /// hold a file for each movement the files count, a data set counts as one. In place of a text that has more than a sixteenth of these
-    /// bytes its pieces count ([`pieces_of`]), which is read once for that; `progress` takes the number of bytes read since the last call.
-    /// Depends on the order, the sizes and what is read with `options` alone.
+    /// Selects every k-th file to be read at once, with the smallest k for which these have at most `most_bytes` together; if there is
+    /// none, only the first file. Folders with one file per movement are divided by file; a data set counts as one file. Text with more
+    /// than a sixteenth of these bytes is divided into pieces ([`pieces_of`]), for which it is read once; `progress` takes the number of
+    /// bytes read since the last call. The result depends only on the order, the sizes and the data read with `options`.
     ///
     /// # Errors
-    /// [`ReadError`] for a folder that cannot be read, and of files that are cut.
+    /// [`ReadError`] for a folder that cannot be read, and for files that are divided.
     pub fn of(
         files: &[PathBuf],
         options: &ReadOptions,
@@ -114,7 +115,7 @@ impl Division {
     }
 }
 
-/// These files, and those of folders that hold one for each movement.
+/// The files, with folders of one file per movement expanded.
 fn listed(files: &[PathBuf]) -> Result<Vec<PathBuf>, ReadError> {
     Ok(files.iter().map(|path| demo_io::files_of(path)).collect::<Result<Vec<_>, _>>()?.concat())
 }
@@ -142,7 +143,8 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(32))]
 
-        /// Every file is in one part, in order; those at once are few enough unless that is a single one; and rows are shared out by bytes.
+        /// Every file is in one part, in order. The files read at once fit the limit unless there is only one, and rows are distributed by
+        /// bytes.
         #[test]
         fn every_file_is_read_once(sizes in prop::collection::vec(0usize..3000, 1..12), most in 1u64..20_000) {
             let folder = tempfile::tempdir().expect("a folder");
@@ -168,7 +170,7 @@ mod tests {
             let mut shared: Vec<FurtherPiece> = shares.concat();
             shared.sort_by_key(|file| file.at);
             prop_assert_eq!(&shared, &division.further);
-            // The folder is its files.
+            // A folder is equivalent to its files.
             let of_folder = of(&[folder.path().to_owned()]);
             if !of_folder.further.is_empty() {
                 prop_assert_eq!(of_folder.at_once.len() + of_folder.further.len(), files.len());
@@ -176,7 +178,7 @@ mod tests {
         }
     }
 
-    /// A large file counts as its pieces, which are evenly spread over it; small ones beside it stay whole.
+    /// A large file is divided into evenly spread pieces; small files stay whole.
     #[test]
     fn a_large_file_is_divided() {
         let folder = tempfile::tempdir().expect("a folder");

@@ -4,7 +4,7 @@ use thiserror::Error;
 
 use crate::PrepareError;
 
-/// Why there is no part, or why parts cannot be used.
+/// Reasons why a part cannot be made, or parts cannot be used.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum PartError {
@@ -16,51 +16,51 @@ pub enum PartError {
     File {
         /// Its name.
         file: String,
-        /// What the system says.
+        /// The system's error message.
         reason: String,
     },
-    /// There is no digest of it.
+    /// A file cannot be reduced to a digest.
     #[error("{file}: {source}")]
     Digest {
         /// Its name.
         file: String,
-        /// Why.
+        /// The reason.
         source: Box<DigestError>,
     },
-    /// Some of several parts do not belong there.
+    /// Some of several parts do not fit.
     #[error("{reason}")]
     Unfit {
-        /// Which of them, counted from 0.
+        /// Their indices, counted from 0.
         parts: Vec<usize>,
-        /// Why.
+        /// The reason.
         reason: String,
     },
-    /// Parts are damaged, missing, or of other files.
+    /// Parts are damaged, missing, or made from other files.
     #[error("{reason}")]
     Parts {
-        /// Why.
+        /// The reason.
         reason: String,
     },
 }
 
-/// Why there is no digest of some recordings.
+/// Reasons why recordings cannot be reduced to a digest.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum DigestError {
-    /// They cannot be prepared.
+    /// The recordings cannot be prepared.
     #[error(transparent)]
     Prepare(#[from] PrepareError),
-    /// Their samples do not become rows.
+    /// Their samples cannot be converted to rows.
     #[error(transparent)]
     Gp(#[from] GpError),
-    /// They are not like those that they are to be learnt from with.
+    /// They differ from the recordings at hand.
     #[error("{what} are {here} here, but {before} in the others")]
     Differs {
-        /// In what.
+        /// The property that differs.
         what: String,
-        /// What it is here.
+        /// Its value here.
         here: String,
-        /// What it is in the others.
+        /// Its value in the others.
         before: String,
     },
 }

@@ -1,5 +1,5 @@
-//! Recordings that are too large to be held together: some files, or pieces of files, are read at once, of each other one a digest is made,
-//! here or on another machine.
+//! Recordings that are too large to be held in memory together. Some files, or pieces of files, are read at once; each other one is reduced
+//! to a digest, here or on another machine.
 
 mod digester;
 mod division;

@@ -1,4 +1,4 @@
-//! Digests of some files, as a file that other machines hand over.
+//! Digests of some files, stored in a file for transfer between machines.
 
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -26,11 +26,11 @@ impl From<Vec<PieceDigest>> for Part {
 }
 
 impl Part {
-    /// Digests of these pieces, of which several are read at a time, one on each thread; each digest is the same whatever else is read.
-    /// `progress` takes the number of bytes read since the last call. With `unfinished`, pieces that an earlier run has read are not read again.
+    /// Digests of these pieces, read in parallel, one on each thread. Each digest is independent of the other pieces. `progress` takes the
+    /// number of bytes read since the last call. Pieces whose digests an earlier run kept in `unfinished` are not read again.
     ///
     /// # Errors
-    /// [`PartError`] of a piece that cannot be used; others are then not read.
+    /// [`PartError`] of the first unusable piece; reading then stops.
     pub fn of(
         pieces: &[FurtherPiece],
         digester: &Digester,
@@ -51,7 +51,7 @@ impl Part {
         Ok(Part::from(pieces.par_iter().map(digest).collect::<Result<Vec<_>, PartError>>()?))
     }
 
-    /// Takes all digests of an earlier run, and says which of these pieces they are not of.
+    /// Takes all digests of an earlier run; also returns the pieces without a digest.
     pub fn kept(unfinished: &Unfinished, pieces: &[FurtherPiece]) -> (Part, Vec<FurtherPiece>) {
         let (mut found, mut others) = (Vec::new(), Vec::new());
         for piece in pieces {
@@ -63,23 +63,23 @@ impl Part {
         (Part::from(found), others)
     }
 
-    /// Keeps all its digests.
+    /// Keeps all digests in `unfinished`.
     pub fn keep_in(&self, unfinished: &Unfinished) {
         self.digests.iter().for_each(|digest| unfinished.keep(digest));
     }
 
-    /// As a file.
+    /// The part as JSON.
     ///
     /// # Errors
-    /// [`PartError::Parts`] where there is no memory for it.
+    /// [`PartError::Parts`] if memory does not suffice.
     pub fn to_json(&self) -> Result<Vec<u8>, PartError> {
         serde_json::to_vec(self).map_err(|error| PartError::Parts { reason: error.to_string() })
     }
 
-    /// From a file.
+    /// Reads a part from JSON.
     ///
     /// # Errors
-    /// [`PartError::Parts`] for what is not a part, or is one of another version.
+    /// [`PartError::Parts`] if the text is not a part, or is one of another version.
     pub fn of_json(text: &[u8]) -> Result<Part, PartError> {
         let no_part = |reason: String| PartError::Parts { reason: format!("this is not a part of a fit: {reason}") };
         let part: Part = serde_json::from_slice(text).map_err(|error| no_part(error.to_string()))?;
@@ -93,7 +93,7 @@ impl Part {
     /// The digests of all further pieces, in their order, from parts in any order.
     ///
     /// # Errors
-    /// [`PartError::Parts`] where a piece is in no part; [`PartError::Unfit`] where it is in several, has changed, or a part was made for other
+    /// [`PartError::Parts`] if a piece is in no part; [`PartError::Unfit`] if it is in several, has changed, or a part was made for other
     /// recordings or options.
     pub fn merged(parts: Vec<Part>, pieces: &[FurtherPiece], digester: &Digester) -> Result<Vec<Digest>, PartError> {
         let mut merged: Vec<Option<(usize, Digest)>> = vec![None; pieces.len()];

@@ -9,11 +9,11 @@ use crate::large::FurtherPiece;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct PieceDigest {
-    /// Its place among them.
+    /// Its index among the further pieces.
     pub(super) at: usize,
     pub(super) name: String,
     pub(super) bytes: u64,
-    /// Which bytes of a file; none if all.
+    /// The range of bytes of the file; `None` if whole.
     span: Option<Range<u64>>,
     pub(super) digest: Digest,
 }
@@ -23,7 +23,7 @@ impl PieceDigest {
         PieceDigest { at: of.at, name: of.piece.name(), bytes: of.bytes, span: span(of), digest }
     }
 
-    /// Whether it is of this piece.
+    /// Whether the digest belongs to this piece.
     pub(super) fn is_of(&self, further: &FurtherPiece) -> bool {
         (&self.name, self.bytes, &self.span) == (&further.piece.name(), further.bytes, &span(further))
     }

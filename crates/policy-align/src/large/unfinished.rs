@@ -1,4 +1,4 @@
-//! Digests of a fit that was interrupted, kept beside what it was to write.
+//! Digests of an interrupted fit, kept next to its output.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -16,19 +16,18 @@ use crate::large::{Digester, FurtherPiece};
 /// The first line of the file.
 const KIND: &str = "policy-align unfinished 1";
 
-/// Digests that are kept as they are made, so that the same command goes on where it was interrupted.
+/// Keeps digests as they are made, so that the same command resumes after an interruption.
 #[derive(Debug)]
 pub struct Unfinished {
-    /// Of every further piece that is a file or a part of one, by its place.
+    /// Sources of the further pieces that are files or parts of files, by index.
     sources: BTreeMap<usize, Source>,
-    /// Of an earlier run.
+    /// Digests of an earlier run.
     found: Mutex<BTreeMap<usize, PieceDigest>>,
-    /// None once nothing can be written any more: a fit does not fail for that.
+    /// `None` after a write error, which does not make the fit fail.
     journal: Mutex<Option<Journal>>,
 }
 
-/// What a digest depends on beside the recordings at hand: the file as it was before anything was read, the part of it, and its share of
-/// all rows.
+/// The inputs of a digest besides the recordings at hand: the state of the file before reading, the part of it, and its share of all rows.
 #[derive(Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Source {
@@ -38,7 +37,7 @@ struct Source {
     rows: usize,
 }
 
-/// What is kept of a piece.
+/// The record kept for a piece.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Record<S, D> {
@@ -47,7 +46,7 @@ struct Record<S, D> {
 }
 
 impl Source {
-    /// None for a folder, or if the system does not tell.
+    /// `None` for a folder, or if the system does not provide the file's state.
     fn of(FurtherPiece { piece, rows, .. }: &FurtherPiece) -> Option<Source> {
         let (state, path) = (FileState::of(&piece.path).ok()?, fs::canonicalize(&piece.path).ok()?);
         let span = piece.span.as_ref().map(|span| span.bytes.clone());
@@ -56,18 +55,18 @@ impl Source {
 }
 
 impl Unfinished {
-    /// Where digests are kept of the fit or part that is written to `output`: `output.unfinished`.
+    /// Path for the digests of the fit or part that writes `output`: `output.unfinished`.
     pub fn beside(output: &Path) -> PathBuf {
         let mut path = output.as_os_str().to_owned();
         path.push(".unfinished");
         PathBuf::from(path)
     }
 
-    /// For digests of these pieces, in this file. Those that an earlier run kept are found again if they were made for the same recordings at
-    /// hand, options and version, and the file that was read has not changed.
+    /// Opens this file for digests of these pieces. Digests from an earlier run are reused if they were made for the same recordings at
+    /// hand, options and version, and the files that were read have not changed.
     ///
     /// # Errors
-    /// If nothing can be written there, another process does, or the file is none of these.
+    /// If the file cannot be written, another process is writing it, or it is of another kind.
     pub fn open(path: &Path, pieces: &[FurtherPiece], digester: &Digester) -> io::Result<Unfinished> {
         let (journal, kept) = Journal::open::<Record<Source, PieceDigest>>(path, KIND)?;
         let source = |piece: &FurtherPiece| Some((piece.at, Source::of(piece)?));
@@ -83,33 +82,33 @@ impl Unfinished {
         Ok(Unfinished { sources, found: Mutex::new(found), journal: Mutex::new(Some(journal)) })
     }
 
-    /// Digests of an earlier run that have not been taken yet.
+    /// Number of an earlier run's digests that have not been taken yet.
     pub fn remaining(&self) -> usize {
         self.found.lock().map_or(0, |found| found.len())
     }
 
-    /// The digest of an earlier run.
+    /// Takes the digest of this piece from an earlier run.
     pub(super) fn take(&self, piece: &FurtherPiece) -> Option<PieceDigest> {
         self.found.lock().ok()?.remove(&piece.at)
     }
 
-    /// Keeps a digest; of a folder none is kept.
+    /// Keeps a digest, except that of a folder.
     pub(super) fn keep(&self, digest: &PieceDigest) {
         let is_full = |journal: &mut Journal, source: &Source| {
             let failed = journal.append(&Record { source, of: digest }).err();
-            // A path that is no text is not kept.
+            // A path that is not valid text is not kept.
             failed.is_some_and(|error| error.kind() != io::ErrorKind::InvalidData)
         };
         if let Some(source) = self.sources.get(&digest.at)
             && let Ok(mut journal) = self.journal.lock()
             && let Some(full) = journal.take_if(|journal| is_full(journal, source))
         {
-            // The model needs the room.
+            // Frees the space for the model.
             let _ = fs::remove_file(full.path());
         }
     }
 
-    /// Removes such a file, once it is not needed and nothing keeps digests there any more.
+    /// Removes such a file when it is no longer needed and no process writes it.
     pub fn remove(path: &Path) {
         journal::remove(path, KIND);
     }

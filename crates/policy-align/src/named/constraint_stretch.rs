@@ -5,10 +5,10 @@ use serde::{Deserialize, Serialize};
 use crate::StateChannel;
 use prepare::sum_of_parts;
 
-/// Degrees below which it does not matter how sure a normal is.
+/// Degrees below which the uncertainty of a normal does not matter.
 const LEAST_ANGLE: f64 = 0.01;
 
-/// What a constraint is on.
+/// The quantity that a constraint acts on.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ConstraintOn {
@@ -20,7 +20,7 @@ pub enum ConstraintOn {
     Orientation(String),
 }
 
-/// A stretch of an episode, and the constraint A v = b that was found on it.
+/// A stretch of an episode, and the constraint A v = b estimated on it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ConstraintStretch {
@@ -28,32 +28,32 @@ pub struct ConstraintStretch {
     pub episode: String,
     /// First and last sample of the recording.
     pub samples: (usize, usize),
-    /// Seconds from the beginning of the episode, of the first sample and of the last.
+    /// Times of the first and the last sample, in seconds from the beginning of the episode.
     pub seconds: (f64, f64),
-    /// What the recording calls the constraint, where it does.
+    /// The recording's label of the constraint, if there is one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub label: Option<String>,
-    /// What acted.
+    /// The constraint, or its absence, on the stretch.
     pub acting: Acting,
-    /// What v is the velocity of.
+    /// The quantity whose velocity is v.
     pub on: ConstraintOn,
-    /// Rows of A, of unit length each, their largest entry positive: (k, n) in units of the recording, or (k, 3). Empty unless
-    /// it is a constraint.
+    /// Rows of A, each of unit length with a positive largest entry: (k, n) in units of the recording, or (k, 3). Empty
+    /// without a constraint.
     pub normals: Vec<Vec<f64>>,
-    /// b, (k): velocity along each row; exactly 0 where it cannot be told from 0.
+    /// b, (k): velocity along each row; exactly 0 if indistinguishable from 0.
     pub speeds: Vec<f64>,
-    /// What is kept along each row, (k), in the unit of the row: none for an orientation, or where b is not 0.
+    /// The constant value along each row, (k), in the unit of the row; `None` for an orientation, or if b is not 0.
     pub levels: Vec<Option<f64>>,
-    /// Expected angle between the rows and the true ones, in degrees.
+    /// Expected angle between these rows and the true ones, in degrees.
     pub angle: f64,
-    /// Logarithm of the likelihood of this constraint over that of none.
+    /// Logarithm of the likelihood ratio of this constraint to no constraint.
     pub evidence: f64,
-    /// Directions of the channels along which a further constraint would not show.
+    /// Directions in the channels along which a further constraint would not be detected.
     pub hidden: Vec<Vec<f64>>,
 }
 
 impl ConstraintStretch {
-    /// In words: "z = 0.42 m", "gripper: 0.71 x + 0.71 y = 0.2 m", "no constraint".
+    /// Description: "z = 0.42 m", "gripper: 0.71 x + 0.71 y = 0.2 m", "no constraint".
     pub fn in_words(&self, state: &[StateChannel]) -> String {
         match self.acting {
             Acting::Constraint => self.constraint_in_words(state),
@@ -63,7 +63,7 @@ impl ConstraintStretch {
         }
     }
 
-    /// The expected error of its normals: "± 0.3°".
+    /// The expected error of the normals: "± 0.3°".
     pub fn angle_in_words(&self) -> String {
         if self.angle < LEAST_ANGLE { format!("± < {LEAST_ANGLE}°") } else { format!("± {}°", short(self.angle)) }
     }
@@ -96,7 +96,7 @@ impl ConstraintStretch {
     }
 }
 
-/// " m", if all channels that count have it.
+/// The unit, such as " m", if all channels with non-negligible weight share it.
 fn unit_of(normal: &[f64], units: &[Option<&str>]) -> String {
     let mut own = normal.iter().zip(units).filter(|(part, _)| part.abs() >= 0.01).map(|(_, unit)| *unit);
     let first = own.next().flatten();

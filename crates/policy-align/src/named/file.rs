@@ -1,4 +1,4 @@
-//! Constraints that were found, as the file that a roll-out reads.
+//! Writes estimated constraints as a file for roll-outs.
 
 use std::fmt::Write as _;
 
@@ -8,13 +8,13 @@ use super::constraint_stretch::{ConstraintOn, ConstraintStretch};
 use crate::StateChannel;
 
 /// The constraints of one episode as a file that [`ConstraintSet::from_toml`](crate::ConstraintSet::from_toml) reads; `robot` is
-/// the path of the URDF that it names. What a roll-out cannot repeat (pushes, orientations, stretches without one normal) is
-/// a comment.
+/// the path of the URDF that it names. Constraints that a roll-out cannot repeat (pushes, orientations, stretches without one
+/// normal) become comments.
 pub fn constraint_file(stretches: &[&ConstraintStretch], state: &[StateChannel], robot: Option<&str>) -> String {
     let mut text = String::new();
     for (at, stretch) in stretches.iter().enumerate() {
         let from = stretch.seconds.0;
-        // It holds until the next begins.
+        // A constraint holds until the next one begins.
         let next = stretches.get(at + 1).filter(|next| next.samples.0 == stretch.samples.1 + 1);
         let until = next.map_or(stretch.seconds.1, |next| next.seconds.0);
         let kept: Vec<&Vec<f64>> = stretch

@@ -1,4 +1,4 @@
-//! The constraints of recordings, by name: what acted on which stretch of an episode.
+//! The constraints on recordings, described by name for each stretch of an episode.
 
 mod constraint_stretch;
 mod file;
@@ -17,14 +17,15 @@ use crate::fit::{averaged, least_noisy_rows};
 use crate::leave_out::in_units_of;
 use crate::{EvaluateError, Model, Prepared};
 
-/// The constraints on movements of a model's channels, found by what the model's policy wanted to do
-/// (S26). Where labels of the recordings tell switches, these are taken. `links` of a robot, if there is one, are candidates for what a constraint is on, beside the channels.
+/// Estimates the constraints on movements of a model's channels by comparing them with the model's policy (S26). Labels in the recordings
+/// determine the switches, if they are present. Besides the channels, the `links` of a robot, if given, are candidates for the constrained
+/// quantity.
 ///
-/// The same movements may be those that the model was learnt from.
+/// The movements may be those from which the model was learnt.
 ///
 /// # Errors
-/// [`EvaluateError::Dimension`] or [`EvaluateError::Gp`] if the movements do not fit, [`EvaluateError::Robot`] for a state that the
-/// robot refuses.
+/// [`EvaluateError::Dimension`] or [`EvaluateError::Gp`] if the movements do not fit, [`EvaluateError::Robot`] for a state that the robot
+/// refuses.
 pub fn estimate_constraints(
     model: &Model,
     prepared: &Prepared,
@@ -53,12 +54,12 @@ pub fn estimate_constraints(
     estimates.stretches.iter().map(|stretch| naming.name(stretch).map_err(robot)).collect()
 }
 
-/// What is needed to name a stretch.
+/// The data needed to name a stretch.
 struct Naming<'a> {
     prepared: &'a Prepared,
     movements: &'a Demonstrations,
     links: Option<&'a TaskLinks>,
-    /// What each task space is.
+    /// The quantity of each task space.
     on: &'a [ConstraintOn],
     scales: &'a DVector<f64>,
     of_joints: &'a DVector<f64>,
@@ -99,7 +100,7 @@ impl Naming<'_> {
         })
     }
 
-    /// Where the constrained point is at each of these states (n, N): none for orientations, or where nothing is constrained.
+    /// The constrained quantity's value at each of these states (n, N); `None` for orientations and without a constraint.
     fn places(&self, acting: Acting, on: &ConstraintOn, states: &DMatrix<f64>) -> Result<Option<DMatrix<f64>>, String> {
         match (acting, on, self.links) {
             (Acting::Constraint, ConstraintOn::Channels, _) => Ok(Some(unscaled(states, self.scales))),
@@ -115,7 +116,7 @@ impl Naming<'_> {
     }
 }
 
-/// A row of A in the units of the recording: A S u, where S u is what was learnt from.
+/// A row of A in the units of the recording: A S u, where S u is the learner's velocity.
 fn in_units(row: &DVector<f64>, scales: Option<&DVector<f64>>) -> DVector<f64> {
     scales.map_or_else(|| row.clone(), |scales| row.component_mul(scales))
 }

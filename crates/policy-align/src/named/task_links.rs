@@ -6,21 +6,22 @@ use super::constraint_stretch::ConstraintOn;
 use crate::channel_joints::ChannelJoints;
 use crate::roll_out::link_point::LinkPoint;
 
-/// Links that are looked at if none is named, at most.
+/// Largest number of links examined if none is named.
 const MOST_LINKS: usize = 6;
 
-/// Links of a robot whose positions or orientations constraints may keep. Channels of the state are joints of that name.
+/// Links of a robot whose positions or orientations may be constrained. Channels of the state are joints of the same name.
 #[derive(Debug, Clone)]
 pub struct TaskLinks {
-    /// By name.
+    /// The links with their names.
     links: Vec<(String, LinkPoint)>,
 }
 
 impl TaskLinks {
-    /// Of the text of a URDF: the links named, or if none is, the last links of all chains that the channels move.
+    /// Reads a robot from the text of a URDF. Uses the named links or, if none is named, the last links of all chains that
+    /// the channels move.
     ///
     /// # Errors
-    /// In a sentence: what is wrong with the text, a link or a channel, or that there are too many last links.
+    /// A sentence that describes a fault of the text, a link or a channel, or that there are too many last links.
     pub fn from_urdf(text: &str, links: &[String], channels: &[String]) -> Result<Self, String> {
         let robot = RobotModel::from_urdf(text).map_err(|error| error.to_string())?;
         let named = if links.is_empty() { last_links(&robot) } else { links.to_vec() };
@@ -34,11 +35,10 @@ impl TaskLinks {
         Ok(TaskLinks { links: named.into_iter().map(link).collect::<Result<_, String>>()? })
     }
 
-    /// Of a robot: the last links of its chains, as far as the channels alone move them; none where they are too many to try
-    /// all.
+    /// The last links of a robot's chains that the channels alone move; none if there are too many to try them all.
     ///
     /// # Errors
-    /// In a sentence: which channel is not a joint.
+    /// A sentence that names the channel that is not a joint.
     pub(crate) fn moved_by(robot: &RobotModel, channels: &[String]) -> Result<Self, String> {
         ChannelJoints::of(robot, channels.iter().map(String::as_str))?;
         let link = |name: String| Some((name.clone(), LinkPoint::new(robot, &name, channels).ok()?));
@@ -46,7 +46,7 @@ impl TaskLinks {
         Ok(TaskLinks { links: if links.len() > MOST_LINKS { Vec::new() } else { links } })
     }
 
-    /// Position, orientation and both of every link as task spaces, for states (n) in columns, and what they are called.
+    /// Position, orientation and both of every link as task spaces, for states (n) in columns, with their names.
     pub(crate) fn poses(&self, states: &DMatrix<f64>) -> Result<Vec<(String, TaskSpace)>, String> {
         let mut spaces = Vec::new();
         for (name, link) in &self.links {
@@ -71,7 +71,7 @@ impl TaskLinks {
         Ok(spaces)
     }
 
-    /// Where a link is in each of these states (n, N), (3, N), in metres; none for one that is not among them.
+    /// Positions of a link, (3, N), in metres, at each of these states (n, N); `None` for an unknown link.
     pub(super) fn places(&self, link: &str, states: &DMatrix<f64>) -> Result<Option<DMatrix<f64>>, String> {
         let point = self.links.iter().find(|(name, _)| name == link);
         point.map(|(_, point)| point.places(states)).transpose()

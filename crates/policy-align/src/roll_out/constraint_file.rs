@@ -1,4 +1,4 @@
-//! Constraints as files.
+//! Reads constraints from files.
 //!
 //! ```toml
 //! [[constraint]]              # the state keeps x: A u = 0, several rows as [[1, 0], [0, 1]]
@@ -28,11 +28,11 @@ use super::constraint_part::{Kind, Part};
 use super::constraint_set::ConstraintSet;
 use super::link_point::LinkPoint;
 
-/// Why constraints cannot be read.
+/// Reasons why constraints cannot be read.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum ConstraintFileError {
-    /// Not TOML, or with unknown members.
+    /// The text is not TOML, or has unknown members.
     #[error("{reason}")]
     NotToml {
         /// The TOML reader's message, in one line.
@@ -41,17 +41,17 @@ pub enum ConstraintFileError {
     /// A constraint with no kind, or with two.
     #[error("constraint {constraint}: {reason}")]
     Constraint {
-        /// Counted from 1.
+        /// Its number, counted from 1.
         constraint: usize,
-        /// What is wrong.
+        /// Description of the fault.
         reason: String,
     },
     /// The file, or that of a robot, cannot be read.
     #[error("{file}: {source}")]
     File {
-        /// Which.
+        /// Its path.
         file: String,
-        /// What the system says.
+        /// The system's error.
         source: std::io::Error,
     },
 }
@@ -84,7 +84,8 @@ enum Rows {
 }
 
 impl ConstraintSet {
-    /// From a text. `channels` are the names of the state; paths of robots are relative to `folder`.
+    /// Reads constraints from a text. `channels` are the names of the state; paths of robots are
+    /// relative to `folder`.
     ///
     /// # Errors
     /// [`ConstraintFileError`].
@@ -105,7 +106,7 @@ impl ConstraintSet {
         Ok(ConstraintSet { parts: parts.collect::<Result<_, _>>()? })
     }
 
-    /// Of a file.
+    /// Reads constraints from a file.
     ///
     /// # Errors
     /// [`ConstraintFileError`].

@@ -10,13 +10,13 @@ use super::link_point::LinkPoint;
 #[derive(Debug, Clone)]
 pub(crate) struct Part {
     pub(crate) kind: Kind,
-    /// Seconds: it holds from here (inclusive) …
+    /// Start of the constraint in seconds, inclusive.
     pub(crate) from: f64,
-    /// … to here (exclusive).
+    /// End of the constraint in seconds, exclusive.
     pub(crate) until: f64,
 }
 
-/// A(x, t), (k, n), or why it has no value there.
+/// A(x, t), (k, n), or the reason why it has no value there.
 pub(crate) type Rows = dyn Fn(DVectorView<'_, f64>, f64) -> Result<DMatrix<f64>, String> + Send + Sync;
 
 /// The kind of constraint.
@@ -24,13 +24,14 @@ pub(crate) type Rows = dyn Fn(DVectorView<'_, f64>, f64) -> Result<DMatrix<f64>,
 pub(crate) enum Kind {
     /// The state keeps its value along each row of A, (k, n).
     Normal(DMatrix<f64>),
-    /// It does not move along rows that change with state and time.
+    /// The state does not move along rows that depend on state and time.
     Function(Function),
-    /// A link's origin keeps its height over a plane through where it is; rows of normals, (k, 3).
+    /// A link's origin keeps its height over a plane through its initial position; the rows are
+    /// normals, (k, 3).
     Plane(LinkPoint, DMatrix<f64>),
-    /// The state does not come nearer than `radius` to `centre`.
+    /// The state stays at least `radius` from `centre`.
     Ball { centre: DVector<f64>, radius: f64 },
-    /// Nor does a link's origin.
+    /// A link's origin stays at least `radius` from `centre`.
     LinkBall { link: LinkPoint, centre: Point3<f64>, radius: f64 },
 }
 
@@ -43,13 +44,13 @@ pub(crate) enum Evaluated {
 }
 
 impl Evaluated {
-    /// Of a distance from a ball's centre; its gradient, (n), is given times the distance.
+    /// A distance from a ball's centre; `scaled`, (n), is its gradient times the distance.
     fn distance(distance: f64, radius: f64, scaled: DVector<f64>) -> Self {
         Evaluated::Distance { clearance: distance - radius, radius, gradient: scaled / distance.max(1e-300) }
     }
 }
 
-/// [`Rows`] that are shared.
+/// Shared [`Rows`].
 #[derive(Clone)]
 pub(crate) struct Function(pub(crate) Arc<Rows>);
 
@@ -77,7 +78,8 @@ impl Kind {
         })
     }
 
-    /// The quantity that must not change while it holds, or for balls must not fall below 0.
+    /// The quantity that must stay constant while the constraint holds or, if the flag is true (for
+    /// balls), must not fall below 0.
     pub(crate) fn kept(&self, state: DVectorView<'_, f64>, time: f64) -> Result<(DVector<f64>, bool), String> {
         let unit_rows = |rows: &DMatrix<f64>| {
             let mut rows = rows.clone();
@@ -86,7 +88,7 @@ impl Kind {
         };
         Ok(match self {
             Kind::Normal(rows) => (unit_rows(rows) * state, false),
-            // Rows that change forbid directions; there need not be anything that they keep.
+            // Varying rows forbid directions; they need not keep any quantity constant.
             Kind::Function(_) => (DVector::zeros(0), false),
             Kind::Plane(link, normals) => (unit_rows(normals) * link.at(state)?.0.coords, false),
             Kind::Ball { .. } | Kind::LinkBall { .. } => match self.at(state, time)? {
@@ -97,7 +99,7 @@ impl Kind {
     }
 }
 
-/// Rows of as many finite numbers as the state has.
+/// Checks that the rows are finite and as long as the state.
 pub(crate) fn fitting(rows: DMatrix<f64>, n: usize) -> Result<DMatrix<f64>, String> {
     if rows.ncols() != n {
         return Err(format!("its rows have {}, the state {n}", counted(rows.ncols(), "number")));

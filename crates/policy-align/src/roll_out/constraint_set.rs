@@ -7,27 +7,27 @@ use nalgebra::{DMatrix, DVector, DVectorView};
 use super::constraint_part::{Evaluated, Function, Kind, Part, fitting};
 use super::holding::Holding;
 
-/// From which distance on a ball slows what approaches it, and at which it stops it, in radii: what steps err by stays
-/// outside.
+/// Distances from a ball, in radii, at which it begins to slow the approach and at which it stops it. The margin keeps integration
+/// errors outside the ball.
 const BAND: f64 = 0.05;
 const MARGIN: f64 = 0.01;
-/// How often speeds towards balls are taken away in turn, until none is left.
+/// Largest number of passes that remove velocity components towards balls.
 const ROUNDS: usize = 20;
 
-/// Constraints on a roll-out that hold at their times.
+/// Constraints on a roll-out, each with the times at which it holds.
 #[derive(Debug, Clone, Default)]
 pub struct ConstraintSet {
     pub(crate) parts: Vec<Part>,
 }
 
-/// Which constraint could not be computed, counted from 1, and why.
+/// The number of a constraint that could not be computed, counted from 1, and the reason.
 pub(crate) type Fault = (usize, String);
 
 impl ConstraintSet {
-    /// The state (n) keeps its value along each row of A, (k, n), from beginning to end.
+    /// The state (n) keeps its value along each row of A, (k, n), during the whole roll-out.
     ///
     /// # Errors
-    /// In a sentence: rows of another length than the state, without a direction, or not finite.
+    /// A sentence: rows whose length differs from the state's, without a direction, or not finite.
     pub fn normal(rows: DMatrix<f64>, n: usize) -> Result<ConstraintSet, String> {
         let rows = fitting(rows, n)?;
         if rows.nrows() == 0 || rows.row_iter().any(|row| row.norm() == 0.0) {
@@ -36,11 +36,12 @@ impl ConstraintSet {
         Ok(ConstraintSet::always(Kind::Normal(rows)))
     }
 
-    /// A(x, t) u = 0, from beginning to end, with A as a function of state (n) and seconds. It gives (k, n), where k may
-    /// change, or a sentence why it has no value there, which becomes [`RollOutError::Constraint`](crate::RollOutError::Constraint).
+    /// A(x, t) u = 0 during the whole roll-out, with A as a function of state (n) and seconds. The function returns (k, n), where k
+    /// may change, or a sentence why A has no value there, which becomes
+    /// [`RollOutError::Constraint`](crate::RollOutError::Constraint).
     ///
-    /// Rows that change forbid directions of movement; whether they keep anything, and so [`Path::broken_by`], only its
-    /// author knows: it is 0 here.
+    /// Varying rows forbid directions of movement. Only the author of the function knows whether they keep any quantity, so they do
+    /// not contribute to [`Path::broken_by`].
     ///
     /// [`Path::broken_by`]: crate::Path::broken_by
     pub fn function(
@@ -53,12 +54,12 @@ impl ConstraintSet {
         ConstraintSet { parts: vec![Part { kind, from: f64::NEG_INFINITY, until: f64::INFINITY }] }
     }
 
-    /// Whether there is none.
+    /// Whether the set is empty.
     pub fn is_empty(&self) -> bool {
         self.parts.is_empty()
     }
 
-    /// Whether one is a function, which may change at any time.
+    /// Whether a constraint is a function, which may change at any time.
     pub(crate) fn changes(&self) -> bool {
         self.parts.iter().any(|part| matches!(part.kind, Kind::Function(_)))
     }
@@ -72,13 +73,14 @@ impl ConstraintSet {
         self.parts.iter().map(radius).fold(f64::INFINITY, f64::min)
     }
 
-    /// Times at which one begins or ends.
+    /// Times at which a constraint begins or ends.
     pub(crate) fn switches(&self) -> impl Iterator<Item = f64> {
         self.parts.iter().flat_map(|part| [part.from, part.until])
     }
 
-    /// What the constraints that hold leave of `wanted`, (n), at a state and a time. `scale` takes states to where constraints act
-    /// at right angles: N = I − A⁺A (3) of A S⁻¹. Near a ball the speed towards it fades to 0 with the distance.
+    /// Projects `wanted`, (n), onto the motions that the constraints allow at a state and a time. `scale` converts states to units
+    /// in which constraints project orthogonally: N = I − A⁺A (3) of A S⁻¹. Near a ball, the speed towards it decreases to 0 with
+    /// the distance.
     pub(crate) fn leave(
         &self,
         holding: &BTreeSet<usize>,
@@ -110,8 +112,8 @@ impl ConstraintSet {
     }
 }
 
-/// Takes away what approaches balls, given as distance in bands and gradient of the distance, within what is free. What
-/// is too near is led away.
+/// Removes velocity components towards balls within the free directions; a state that is too near is moved away. Each ball has its
+/// distance in bands and the gradient of its distance.
 fn keep_off(balls: &[(f64, DVector<f64>)], free: &NullSpaceProjector, wanted: &mut DVector<f64>) {
     let speed = wanted.norm();
     for _ in 0..ROUNDS {
@@ -126,7 +128,7 @@ fn keep_off(balls: &[(f64, DVector<f64>)], free: &NullSpaceProjector, wanted: &m
             changed = true;
             let turn = along.norm_squared();
             if turn <= 1e-20 * gradient.norm_squared() {
-                // Nothing that is free leads away from it.
+                // No free direction leads away from it.
                 wanted.fill(0.0);
                 return;
             }
@@ -136,31 +138,31 @@ fn keep_off(balls: &[(f64, DVector<f64>)], free: &NullSpaceProjector, wanted: &m
             return;
         }
     }
-    // Several balls leave no motion that this finds.
+    // With several balls, no allowed motion was found.
     wanted.fill(0.0);
 }
 
-/// Follows how well constraints are kept.
+/// Monitors the violation of constraints.
 #[derive(Debug, Clone)]
 pub(crate) struct Watch<'a> {
     set: &'a ConstraintSet,
     holding: Holding<'a>,
     /// The value of each part when it began to hold.
     begun: Vec<Option<DVector<f64>>>,
-    /// The largest change so far, or depth within a ball, in units of the state or metres.
+    /// The largest violation so far: change, or depth within a ball, in units of the state or metres.
     pub(crate) broken_by: f64,
-    /// Which part that was, counted from 1.
+    /// Number of the part with this violation, counted from 1.
     pub(crate) worst: usize,
 }
 
 impl<'a> Watch<'a> {
     pub(crate) fn new(set: &'a ConstraintSet) -> Self {
-        // At its end a constraint has held until then.
+        // A constraint is also checked at its end time.
         let holding = Holding::new(&set.parts, |part, time| time > part.until);
         Watch { set, holding, begun: vec![None; set.parts.len()], broken_by: 0.0, worst: 0 }
     }
 
-    /// At a state, at times that do not go back.
+    /// Checks the constraints at a state; times must not decrease.
     pub(crate) fn update(&mut self, state: DVectorView<'_, f64>, time: f64) -> Result<(), Fault> {
         for &at in self.holding.at(time) {
             let begun = &mut self.begun[at];

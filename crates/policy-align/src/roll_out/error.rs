@@ -3,11 +3,12 @@ use std::borrow::Cow;
 use prepare::numbers::{counted, short};
 use thiserror::Error;
 
-/// Why a policy cannot be followed. A message says what and where; [`RollOutError::remedy`] what next.
+/// Reasons why a policy cannot be rolled out. The message describes the fault and its place;
+/// [`RollOutError::remedy`] suggests the next step.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum RollOutError {
-    /// The policy depends on a context, and none was chosen.
+    /// The policy depends on a context that is not fixed.
     #[error("the policy depends on {}", .names.join(", "))]
     Context {
         /// Channels of the context.
@@ -16,9 +17,9 @@ pub enum RollOutError {
     /// The start has another length than the state.
     #[error("the start has {}, the state {expected}: {}", counted(*found, "number"), .names.join(", "))]
     Start {
-        /// Numbers given.
+        /// Number of given values.
         found: usize,
-        /// Channels of the state.
+        /// Number of channels of the state.
         expected: usize,
         /// Their names.
         names: Vec<String>,
@@ -26,7 +27,7 @@ pub enum RollOutError {
     /// The start is not finite.
     #[error("the start is not finite in channel '{channel}'")]
     StartNotFinite {
-        /// Which.
+        /// Name of the channel.
         channel: String,
     },
     /// The start is outside the data.
@@ -39,42 +40,42 @@ pub enum RollOutError {
         /// The demonstrated range of each channel, by name.
         ranges: Vec<(String, [f64; 2])>,
     },
-    /// The context that was chosen is outside the data.
+    /// The fixed context is outside the data.
     #[error("context {name}={} is outside the data", short(*.value))]
     ContextUnsupported {
         /// Its channel.
         name: String,
-        /// What was chosen.
+        /// Its value.
         value: f64,
-        /// The range that counts as known.
+        /// The supported range.
         range: [f64; 2],
     },
     /// A constraint does not allow the start.
     #[error("the start breaks constraint {constraint} by {by:.3e}")]
     StartBreaks {
-        /// Counted from 1, as in its file.
+        /// Its number, counted from 1, as in its file.
         constraint: usize,
-        /// How far inside a ball.
+        /// Depth inside a ball.
         by: f64,
     },
-    /// Beyond a joint limit from the beginning.
+    /// The start is beyond a joint limit.
     #[error("the start is beyond the limit of joint '{joint}'")]
     StartBeyondLimit {
-        /// Which.
+        /// Name of the joint.
         joint: String,
     },
-    /// A duration or a step that cannot be.
+    /// A duration or a step is invalid.
     #[error("{name} is {}: it must be positive and finite", short(*.value))]
     NotPositive {
-        /// "seconds".
+        /// Name of the option, such as "seconds".
         name: &'static str,
-        /// What was given.
+        /// The given value.
         value: f64,
     },
     /// More samples than the limit.
     #[error("{samples:.1e} samples exceed the limit of {} million", LONGEST / 1_000_000)]
     TooLong {
-        /// How many it would be.
+        /// Number of samples.
         samples: f64,
     },
     /// The policy's action is not finite at a state that was reached.
@@ -88,35 +89,35 @@ pub enum RollOutError {
     /// The integration was given up.
     #[error("more than {limit} steps of integration are needed: {} s of {} s were reached", short(*.time), short(*.seconds))]
     TooManySteps {
-        /// How many are taken at most.
+        /// Largest number of steps.
         limit: usize,
         /// Seconds reached.
         time: f64,
-        /// Seconds asked for.
+        /// Seconds requested.
         seconds: f64,
     },
     /// A constraint cannot be computed at a state.
     #[error("constraint {constraint} has no value at {time:.3} s: {reason}")]
     Constraint {
-        /// Counted from 1, as in its file.
+        /// Its number, counted from 1, as in its file.
         constraint: usize,
         /// Seconds from the start.
         time: f64,
-        /// What is wrong.
+        /// The reason.
         reason: String,
     },
 }
 
-/// To three digits, so that what is too little does not round to enough.
+/// Rounds down to three digits, so that an insufficient support does not appear sufficient.
 fn down(support: f64) -> f64 {
     (1e3 * support).floor() / 1e3
 }
 
-/// Samples of a roll-out, at most.
+/// Largest number of samples of a roll-out.
 pub(crate) const LONGEST: usize = 10_000_000;
 
 impl RollOutError {
-    /// The next step.
+    /// Suggestion for the next step.
     pub fn remedy(&self) -> Cow<'static, str> {
         Cow::Borrowed(match self {
             RollOutError::Unsupported { ranges, .. } => {

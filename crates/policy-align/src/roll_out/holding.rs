@@ -2,14 +2,14 @@ use std::collections::BTreeSet;
 
 use super::constraint_part::Part;
 
-/// Which constraints hold, as time goes on: each is looked at when it begins and while it holds, not at every moment.
+/// Tracks which constraints hold as time proceeds. A constraint is examined only when it begins and while it holds.
 #[derive(Debug, Clone)]
 pub(crate) struct Holding<'a> {
     parts: &'a [Part],
-    /// Those that have not begun yet, the next at the end.
+    /// Parts that have not begun yet, in reverse order of their start.
     to_come: Vec<usize>,
     now: BTreeSet<usize>,
-    /// Whether a part is over at a time.
+    /// Whether a part has ended at a time.
     over: fn(&Part, f64) -> bool,
 }
 
@@ -20,7 +20,7 @@ impl<'a> Holding<'a> {
         Holding { parts, to_come, now: BTreeSet::new(), over }
     }
 
-    /// Places of the parts that hold at a time, which is not before the last that was asked for.
+    /// Indices of the parts that hold at a time; times must not decrease between calls.
     pub(crate) fn at(&mut self, time: f64) -> &BTreeSet<usize> {
         while let Some(&next) = self.to_come.last().filter(|&&next| self.parts[next].from <= time) {
             self.to_come.pop();

@@ -3,7 +3,7 @@ use nalgebra::DVectorView;
 
 use crate::channel_joints::joint_of;
 
-/// Limits of the channels that are joints of a robot.
+/// Limits of those channels that are joints of a robot.
 #[derive(Debug, Clone, PartialEq)]
 pub struct JointLimits {
     /// Channel, joint, lower and upper limit.
@@ -11,10 +11,10 @@ pub struct JointLimits {
 }
 
 impl JointLimits {
-    /// The limits of a robot (the text of its URDF) for the channels that are named like its joints, in radians or metres.
+    /// The limits of a robot (the text of its URDF) for the channels with the names of its joints, in radians or metres.
     ///
     /// # Errors
-    /// In a sentence: what is wrong with the text, or that no channel is a joint.
+    /// A sentence that describes a fault of the text, or says that no channel is a joint.
     pub fn from_urdf(text: &str, channels: &[String]) -> Result<Self, String> {
         let robot = RobotModel::from_urdf(text).map_err(|error| error.to_string())?;
         let of = |(at, name): (usize, &String)| {

@@ -3,7 +3,7 @@ use nalgebra::{DMatrix, DVectorView, Matrix3xX, Matrix6xX, Point3};
 
 use crate::channel_joints::ChannelJoints;
 
-/// The origin of a robot's link as the state moves it. Channels of the state are joints of the same name.
+/// The origin of a robot's link as a function of the state. Channels of the state are joints of the same name.
 #[derive(Debug, Clone)]
 pub(crate) struct LinkPoint {
     chain: Chain,
@@ -12,8 +12,7 @@ pub(crate) struct LinkPoint {
 
 impl LinkPoint {
     /// # Errors
-    /// In a sentence: a link that is not there, or a channel that is no joint, or a joint that moves the link and is no
-    /// channel.
+    /// A sentence: an unknown link, a channel that is not a joint, or a joint that moves the link and is not a channel.
     pub(crate) fn new(robot: &RobotModel, link: &str, channels: &[String]) -> Result<Self, String> {
         let link = robot.link(link).map_err(|error| error.to_string())?;
         let joints = ChannelJoints::of(robot, channels.iter().map(String::as_str))?;
@@ -29,10 +28,10 @@ impl LinkPoint {
         Ok(LinkPoint { chain: robot.chain(link), joints })
     }
 
-    /// Where the point is, metres in the root link's frame, and the derivative of that by the state, (3, n).
+    /// Position of the point, metres in the root link's frame, and its derivative with respect to the state, (3, n).
     ///
     /// # Errors
-    /// What the robot says of the configuration.
+    /// The robot model's error for the configuration.
     pub(crate) fn at(&self, state: DVectorView<'_, f64>) -> Result<(Point3<f64>, DMatrix<f64>), String> {
         let q = self.joints.configuration(state);
         let mut jacobian = Matrix3xX::zeros(self.joints.n_joints());
@@ -44,10 +43,10 @@ impl LinkPoint {
         ))
     }
 
-    /// Where the point is in each of these states (n, N), (3, N), metres in the root link's frame.
+    /// Positions of the point at each of these states (n, N), (3, N), metres in the root link's frame.
     ///
     /// # Errors
-    /// What the robot says of the first configuration that it cannot place.
+    /// The robot model's error for the first configuration that it refuses.
     pub(crate) fn places(&self, states: &DMatrix<f64>) -> Result<DMatrix<f64>, String> {
         let (mut places, mut workspace) = (DMatrix::zeros(3, states.ncols()), Workspace::new());
         let placed = self.joints.by_groups(states, |first, q| {
@@ -59,11 +58,11 @@ impl LinkPoint {
         placed.map(|()| places).map_err(|error| error.to_string())
     }
 
-    /// The derivative of the link's pose by the state in each of these states (n, N): of each (6, n), what velocities of the state make of
-    /// the velocity vx vy vz of the link's origin and of its angular velocity wx wy wz, in the root link's axes.
+    /// Jacobians (6, n) of the link's pose at each of these states (n, N). They map velocities of the state to the velocity vx vy vz of
+    /// the link's origin and the angular velocity wx wy wz, in the root link's axes.
     ///
     /// # Errors
-    /// What the robot says of the first configuration that it cannot place.
+    /// The robot model's error for the first configuration that it refuses.
     pub(crate) fn jacobians(&self, states: &DMatrix<f64>) -> Result<Vec<DMatrix<f64>>, String> {
         let (n, places) = (self.joints.n_joints(), &self.joints.places);
         let (mut all, mut workspace) = (Vec::with_capacity(states.ncols()), Workspace::new());
@@ -86,7 +85,7 @@ mod tests {
 
     const ARM: &str = include_str!("../../../../robots/seven_joint_arm.urdf");
 
-    /// The tool, and states whose channels are in another order than the joints.
+    /// The tool link, and states whose channels are in another order than the joints.
     fn tool() -> (LinkPoint, DMatrix<f64>) {
         let robot = RobotModel::from_urdf(ARM).expect("the robot of this project loads");
         let names: Vec<String> = robot.joints().iter().rev().map(|joint| joint.name().to_owned()).collect();

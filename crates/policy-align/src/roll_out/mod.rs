@@ -1,4 +1,4 @@
-//! A learnt policy followed from a start, under constraints that need not have been in the data.
+//! Rolls out a learnt policy from a start, under constraints that need not have occurred in the data.
 
 mod constraint_file;
 mod constraint_part;
@@ -27,21 +27,22 @@ use error::LONGEST;
 use holding::Holding;
 use runge_kutta::{RungeKutta, Unfollowed};
 
-/// Error of a step, in spreads of the channels.
+/// Largest error of a step, as a share of the channels' spreads.
 const TOLERANCE: f64 = 1e-4;
-/// And at most this share of the least ball's radius …
+/// It is also at most this share of the smallest ball's radius …
 const OF_RADIUS: f64 = 5e-4;
-/// … but at least this share of the spreads: a ball of next to no radius does not make every step tiny.
+/// … but at least this share of the spreads, so that a ball with a tiny radius does not make every step tiny.
 const FINEST: f64 = 1e-7;
-/// Steps of integration, with those tried in vain: so many, or so many for each sample and each change of constraints if
-/// that is more.
+/// Largest number of integration steps, including rejected ones: the larger of a fixed number and a number per sample and per
+/// change of constraints.
 const STEPS: usize = 200_000;
 const STEPS_EACH: usize = 10;
-/// At rest is what is slower than this share of the demonstrated median …
+/// The state is at rest if it is slower than this share of the demonstrated median speed …
 const AT_REST: f64 = 0.01;
-/// … at all samples within so many of the model's time steps, whatever the step of the roll-out: at ten samples of the usual step.
+/// … at all samples within this many of the model's time steps, whatever the step of the roll-out; these are ten samples with the
+/// default step.
 const RESTING: f64 = 8.5;
-/// Duration without another, in durations of the longest episode.
+/// Default duration, in durations of the longest episode.
 const TIMES_AS_LONG: f64 = 3.0;
 
 /// Integrates a policy under constraints, u = N(x, t) π(x) (3), with adaptive steps.
@@ -49,11 +50,11 @@ const TIMES_AS_LONG: f64 = 3.0;
 pub struct RollOut {
     /// The constraints and their times.
     pub constraints: ConstraintSet,
-    /// Limits at which to stop.
+    /// Joint limits that end the roll-out.
     pub limits: Option<JointLimits>,
-    /// At most so long, in seconds; three times the longest episode if not given.
+    /// Largest duration in seconds; by default three times that of the longest episode.
     pub seconds: Option<f64>,
-    /// Between two samples of the result, in seconds; the model's time step if not given.
+    /// Seconds between two samples of the result; by default the model's time step.
     pub step: Option<f64>,
 }
 
@@ -62,32 +63,33 @@ pub struct RollOut {
 pub struct Path {
     /// Seconds from the start, (N).
     pub times: Vec<f64>,
-    /// In the units of the recording, one column a sample, (n, N).
+    /// States in the units of the recording, one column per sample, (n, N).
     pub states: DMatrix<f64>,
     /// The projected action, in units of the state per second, (n, N).
     pub velocities: DMatrix<f64>,
-    /// Why it ended.
+    /// The reason for its end.
     pub stop: Stop,
-    /// By how much a constraint was broken at most, in its unit, and which, counted from 1; none if there was none.
+    /// The largest violation of a constraint, in its unit, and the number of that constraint, counted from 1; `None` without a
+    /// violation.
     pub broken_by: Option<(f64, usize)>,
 }
 
-/// Why a roll-out ended.
+/// Reasons for the end of a roll-out.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Stop {
-    /// Slower than 1 % of the demonstrated median speed for ten of the model's time steps, with no constraint left that may change.
+    /// Slower than 1 % of the demonstrated median speed for ten of the model's time steps, and no remaining constraint can change.
     AtRest,
     /// The next state would have been outside the demonstrated region.
     LeftTheData,
     /// The next state would have been beyond the limit of this joint.
     Limit(String),
-    /// The time was up.
+    /// The duration is over.
     Time,
 }
 
 impl RollOut {
-    /// Follows a model's policy from a start (n), in the units of the recording. The path ends with the last state that
-    /// is supported and within limits.
+    /// Follows a model's policy from a start (n), in the units of the recording. The path ends with the last supported state within
+    /// limits.
     ///
     /// # Errors
     /// [`RollOutError`].
@@ -124,14 +126,14 @@ impl RollOut {
         let (mut times, mut states) = (vec![0.0], vec![start.clone()]);
         let mut velocities = vec![run.velocity(holding.at(0.0), start, 0.0)?];
         watch.update(start.as_view(), 0.0).map_err(fault(0.0))?;
-        // Since when it rests.
+        // Time since which the state has been at rest.
         let mut resting = None;
         let stop = loop {
             let (time, state) = (times[times.len() - 1], &states[states.len() - 1]);
             if time >= run.seconds {
                 break Stop::Time;
             }
-            // Multiples of the step, not sums of it: no rounding adds up.
+            // Multiples of the step instead of sums, so that rounding errors do not accumulate.
             let next_time = (times.len() as f64 * step).min(run.seconds);
             let next = run.advance(&mut method, &mut holding, state.clone(), (time, next_time))?;
             if !run.policy.is_supported(next.as_view()) {
@@ -147,7 +149,7 @@ impl RollOut {
             times.push(next_time);
             states.push(next);
             velocities.push(velocity);
-            // A constraint that ends later may let it go on, and so may one that changes.
+            // The state may move again when a constraint ends, or if a constraint changes.
             let stays = !changes && run.switches.last().is_none_or(|&last| last <= next_time);
             if resting.is_some_and(|since| next_time - since >= RESTING * model.time_step) && stays {
                 break Stop::AtRest;
@@ -193,7 +195,7 @@ impl RollOut {
         Ok(())
     }
 
-    /// Times within the roll-out at which constraints begin or end, ascending, each once.
+    /// Times within the roll-out at which constraints begin or end, ascending and unique.
     fn switches(&self, seconds: f64) -> Vec<f64> {
         let mut switches: Vec<f64> = self.constraints.switches().filter(|&t| t > 0.0 && t < seconds).collect();
         switches.sort_by(f64::total_cmp);
@@ -212,7 +214,7 @@ struct Run<'a> {
 }
 
 impl Run<'_> {
-    /// N(x, t) π(x), under the constraints that hold.
+    /// N(x, t) π(x), under the active constraints.
     fn velocity(
         &self,
         holding: &BTreeSet<usize>,
@@ -224,8 +226,8 @@ impl Run<'_> {
         Ok(velocity)
     }
 
-    /// From one time to another, piece by piece where constraints begin or end. Within a piece none does; its end is no
-    /// part of it.
+    /// Advances from one time to another in intervals between the times at which constraints begin or end. The end of an interval
+    /// is excluded.
     fn advance(
         &self,
         method: &mut RungeKutta,
@@ -254,7 +256,8 @@ impl Run<'_> {
     }
 }
 
-/// A share of every channel's spread, an idle channel having that of the widest, and of the least ball's radius.
+/// A share of every channel's spread, limited by the smallest ball's radius. A constant channel has a small share of the largest
+/// spread instead.
 fn tolerance(model: &Model, least_radius: f64) -> DVector<f64> {
     let spread = |at: usize| model.state[at].high - model.state[at].low;
     let widest = (0..model.state.len()).map(|at| spread(at) * model.state[at].scale).fold(0.0, f64::max);

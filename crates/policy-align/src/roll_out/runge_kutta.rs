@@ -1,16 +1,16 @@
 use nalgebra::DVector;
 
-/// Shortest step, as a share of the interval: where a constraint takes hold a solution has an edge, which no step resolves.
+/// Shortest step, as a share of the interval. At the onset of a constraint the solution has a kink, which no step resolves.
 const SHORTEST: f64 = 1e-6;
 
-/// Why a solution was not followed to its end.
+/// Reasons why a solution was not followed to its end.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Unfollowed<E> {
     /// The field has no value somewhere.
     Field(E),
-    /// It is not finite at a state that was reached after so many seconds.
+    /// The field is not finite at a state that was reached after `elapsed` seconds.
     NotFinite { state: DVector<f64>, elapsed: f64 },
-    /// So many steps are not enough; so many seconds had passed.
+    /// The step limit was reached after `elapsed` seconds.
     Steps { limit: usize, elapsed: f64 },
 }
 
@@ -20,16 +20,16 @@ impl<E> From<E> for Unfollowed<E> {
     }
 }
 
-/// The method of Bogacki and Shampine: order 3, with an error of order 2 that chooses the step.
+/// The method of Bogacki and Shampine: order 3, with an embedded method of order 2 for step-size control.
 #[derive(Debug)]
 pub(crate) struct RungeKutta {
     /// Largest error of a step in each dimension, (n).
     tolerance: DVector<f64>,
     /// The step to try next, in seconds.
     step: f64,
-    /// Intervals of more seconds than this have the shortest step of one of this length.
+    /// Longer intervals, in seconds, use the shortest step of an interval of this length.
     longest: f64,
-    /// Steps at most, those tried in vain among them, and what is left of them.
+    /// Largest number of steps, including rejected ones, and the number left.
     limit: usize,
     left: usize,
 }
@@ -55,7 +55,7 @@ impl RungeKutta {
         while left > 0.0 {
             let h = self.step.min(left).max(shortest.min(left));
             let time = duration - left;
-            // Where a step no longer shortens what is left, no number of them is enough.
+            // If a step no longer reduces the remaining time, no number of steps suffices.
             let Some(less) = self.left.checked_sub(1).filter(|_| left - h < left) else {
                 return Err(Unfollowed::Steps { limit: self.limit, elapsed: time });
             };
@@ -66,7 +66,7 @@ impl RungeKutta {
             let k4 = field(&next, time + h)?;
             let error = (&k1 * (-5.0 / 72.0) + &k2 * (1.0 / 12.0) + &k3 * (1.0 / 9.0) + &k4 * (-0.125)) * h;
             let error = error.component_div(&self.tolerance).amax();
-            // What is not finite may only be a step too long, which is tried again, shorter.
+            // A non-finite value may result from a step that is too long; a shorter one is tried.
             let lost = !(finite(&next) && finite(&k4));
             if lost && h <= shortest {
                 return Err(Unfollowed::NotFinite { state: x, elapsed: time });
@@ -120,7 +120,7 @@ mod tests {
         let field = |x: &DVector<f64>, _: f64| Ok::<_, Infallible>(dvector![if x[0] < 0.5 { 1.0 } else { 0.0 }]);
         let tolerance = 1e-4;
         let end = RungeKutta::new(dvector![tolerance], 3.0, 10_000).follow(field, dvector![0.0], 2.0).unwrap();
-        // A step over an edge is as wrong as it is long: some steps' tolerances, not one.
+        // A step over a kink has an error proportional to its length: several tolerances, not one.
         assert!((end[0] - 0.5).abs() < 20.0 * tolerance, "{end}");
     }
 
@@ -131,7 +131,7 @@ mod tests {
         let Err(Unfollowed::NotFinite { state, elapsed }) = follow(0.0) else { panic!("it stops at the edge") };
         assert!((state[0] - 0.5).abs() < 1e-3 && (elapsed - 0.5).abs() < 1e-3, "{state} {elapsed}");
         assert!(matches!(follow(1.0), Err(Unfollowed::NotFinite { elapsed: 0.0, .. })));
-        // Trial steps that overflow are only too long.
+        // Trial steps that overflow are too long and are retried.
         let steep = |x: &DVector<f64>, _: f64| Ok::<_, Infallible>(x.map(|x| -x.sinh()));
         let end = RungeKutta::new(dvector![1e-4], 1.0, 10_000).follow(steep, dvector![10.0], 1.0).unwrap();
         let exact = 2.0 * (5.0_f64.tanh() * (-1.0_f64).exp()).atanh();

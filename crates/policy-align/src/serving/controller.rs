@@ -7,41 +7,42 @@ use super::joint_order::{CommandedJoint, commanded};
 use super::{ControllerError, Halt, Quantity};
 use crate::{Model, ModelPolicy};
 
-/// Commands the velocities of a robot's joints by a model's policy, and zero wherever that would not be sound.
+/// Commands velocities of a robot's joints according to a model's policy, and zero whenever the policy must not be used.
 ///
-/// It reads no clock: all times are durations since one instant, which the caller chooses, on a clock that never goes back. Positions
-/// may come in one message or in several, with joints that are no channels among them; each joint's newest counts.
+/// It reads no clock: all times are durations since one instant, which the caller chooses, on a monotonic clock. Positions may arrive
+/// in one or several messages, together with joints that are not channels; the newest position of each joint counts.
 ///
-/// Positions are in radians or metres and velocities in radians or metres per second, as ROS 2 has them; channels in degrees,
-/// centimetres or millimetres are converted.
+/// Positions are in radians or metres and velocities in radians or metres per second, as in ROS 2. Channels in degrees, centimetres or
+/// millimetres are converted.
 #[derive(Debug)]
 pub struct VelocityController<'a> {
     policy: ModelPolicy<'a>,
     joints: Vec<CommandedJoint>,
     stale: Duration,
     max_speed: Option<f64>,
-    /// Newest position of each joint, in the order of the command, and when it came.
+    /// Newest position of each joint with its time of arrival, in the order of the command.
     positions: Vec<Option<(f64, Duration)>>,
     /// The joints of the newest message.
     found: Option<Vec<String>>,
 }
 
-/// What a robot is to do.
+/// A command to a robot.
 #[derive(Debug, Clone, PartialEq)]
 pub struct VelocityCommand {
-    /// Of each joint in the order of [`VelocityController::joints`], (n), in rad/s or m/s.
+    /// Velocity of each joint in the order of [`VelocityController::joints`], (n), in rad/s or m/s.
     pub velocities: DVector<f64>,
-    /// Why they are zero, if they must be.
+    /// The reason why they are zero, if the robot must stop.
     pub halt: Option<Halt>,
-    /// Seconds since the oldest position came; none while one is missing.
+    /// Seconds since the oldest position arrived; `None` while one is missing.
     pub age: Option<f64>,
-    /// [`LearntPolicy::support`](motion::LearntPolicy::support) of the state; none where it was not evaluated.
+    /// [`LearntPolicy::support`](motion::LearntPolicy::support) of the state; `None` if not evaluated.
     pub support: Option<f64>,
 }
 
 impl<'a> VelocityController<'a> {
-    /// Of a model in its chosen context. `joints` are pairs of a channel and the joint that it is, in the order of the command; without
-    /// any each channel is the joint of its name, in the order of the model. Positions older than `stale` seconds stop the robot.
+    /// A controller for a model in its fixed context. `joints` are pairs of a channel and its joint, in the order of the command;
+    /// without pairs each channel is the joint of its name, in the order of the model. Positions older than `stale` seconds stop the
+    /// robot.
     ///
     /// # Errors
     /// [`ControllerError`]: a context is open, `stale` is not positive, or the pairs do not name each channel once.
@@ -55,7 +56,8 @@ impl<'a> VelocityController<'a> {
         Ok(VelocityController { policy: model.policy(), joints, stale, max_speed: None, positions, found: None })
     }
 
-    /// The same with no joint faster than `max_speed`, in rad/s or m/s: all are slowed by one factor, so that the direction stays.
+    /// The controller with every joint limited to `max_speed`, in rad/s or m/s. All joints are slowed by one factor, so that the
+    /// direction stays the same.
     ///
     /// # Errors
     /// [`ControllerError::NotPositive`].
@@ -68,7 +70,7 @@ impl<'a> VelocityController<'a> {
         self.joints.iter().map(|joint| joint.name.clone()).collect()
     }
 
-    /// Takes a message that came at `now`: the position of each named joint. A name without a position has none.
+    /// Takes a message that arrived at `now`: the position of each named joint. A name without a position is ignored.
     pub fn observe(&mut self, names: &[String], positions: &[f64], now: Duration) {
         for (joint, newest) in self.joints.iter().zip(&mut self.positions) {
             let at = names.iter().position(|name| *name == joint.name);
@@ -79,7 +81,7 @@ impl<'a> VelocityController<'a> {
         self.found = Some(names.iter().zip(positions).map(|(name, _)| name.clone()).collect());
     }
 
-    /// The command at `now`: π(x) at the newest positions, or zero and why.
+    /// The command at `now`: π(x) at the newest positions, or zero with the reason.
     pub fn command(&self, now: Duration) -> VelocityCommand {
         let age = self.oldest().map(|(_, came)| now.saturating_sub(came).as_secs_f64());
         let mut command =
@@ -98,7 +100,7 @@ impl<'a> VelocityController<'a> {
         command
     }
 
-    /// The joint whose position is oldest, and when it came; none while one is missing.
+    /// The joint whose position is oldest, with its time of arrival; `None` while a position is missing.
     fn oldest(&self) -> Option<(&str, Duration)> {
         let came = self.positions.iter().map(|newest| newest.map(|(_, came)| came)).collect::<Option<Vec<_>>>()?;
         self.joints.iter().map(|joint| joint.name.as_str()).zip(came).min_by_key(|(_, came)| *came)
@@ -123,7 +125,7 @@ impl<'a> VelocityController<'a> {
         Ok(state)
     }
 
-    /// The velocities (n) at a state (n, 1), as `predict` has them.
+    /// The velocities (n) at a state (n, 1), equal to those of `predict`.
     fn velocities(&self, state: &DMatrix<f64>, support: f64) -> Result<DVector<f64>, Halt> {
         if support.is_nan() || support < self.policy.least_support() {
             return Err(Halt::Outside { support });

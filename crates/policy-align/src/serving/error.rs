@@ -1,30 +1,31 @@
 use prepare::numbers::short;
 use thiserror::Error;
 
-/// Why a model cannot command a robot. A message says what, and after its last semicolon what next.
+/// Reasons why a model cannot command a robot. The part of a message after the last semicolon
+/// suggests the next step.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum ControllerError {
-    /// The policy depends on a context, and none was chosen.
+    /// The policy depends on a context that is not fixed.
     #[error("the policy depends on {}; choose a value for each", .names.join(", "))]
     Context {
         /// Channels of the context.
         names: Vec<String>,
     },
-    /// A number that must be positive and finite.
+    /// A number is not positive and finite.
     #[error("{name} is {}; it must be positive and finite", short(*.value))]
     NotPositive {
         /// "stale" or "max-speed".
         name: &'static str,
-        /// What was given.
+        /// The given value.
         value: f64,
     },
-    /// A joint is given to a channel that the model lacks.
+    /// A joint is assigned to a channel that the model does not have.
     #[error("the model has no channel '{channel}'; it has {}", .channels.join(", "))]
     UnknownChannel {
-        /// The name given.
+        /// The given name.
         channel: String,
-        /// The channels there are.
+        /// The model's channels.
         channels: Vec<String>,
     },
     /// A channel or a joint is named twice.
@@ -33,7 +34,7 @@ pub enum ControllerError {
         /// The channel or the joint.
         name: String,
     },
-    /// Channels without a joint.
+    /// Some channels have no joint.
     #[error("no joint for {}; name one for every channel", .channels.join(", "))]
     NoJoint {
         /// The channels.

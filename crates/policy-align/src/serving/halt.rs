@@ -2,13 +2,13 @@ use std::fmt;
 
 use prepare::numbers::short;
 
-/// Why a [`VelocityController`](super::VelocityController) commands zero.
+/// Reasons why a [`VelocityController`](super::VelocityController) commands zero.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Halt {
-    /// No joint state has come.
+    /// No joint state has arrived.
     NoState,
-    /// Joints whose position has not come.
+    /// Positions of some joints have not arrived.
     Missing {
         /// The joints.
         joints: Vec<String>,
@@ -19,14 +19,14 @@ pub enum Halt {
     Stale {
         /// Its joint.
         joint: String,
-        /// Seconds since it came.
+        /// Seconds since it arrived.
         age: f64,
     },
-    /// NaN or infinite.
+    /// A number is NaN or infinite.
     NotFinite {
-        /// What is.
+        /// The quantity.
         quantity: Quantity,
-        /// Of which joint.
+        /// Its joint.
         joint: String,
         /// Its value.
         value: f64,
@@ -43,12 +43,12 @@ pub enum Halt {
 pub enum Quantity {
     /// Its position, as the robot reports it.
     Position,
-    /// Its velocity, as the policy has it.
+    /// Its velocity, according to the policy.
     Velocity,
 }
 
 impl Halt {
-    /// The reason in a word, the same for all numbers and joints.
+    /// The reason in a word, which does not depend on numbers and joints.
     pub fn word(&self) -> &'static str {
         match self {
             Halt::NoState => "no state",

@@ -2,16 +2,17 @@ use super::ControllerError;
 use crate::Model;
 use crate::channel_joints::unit;
 
-/// A joint that is commanded, and the channel that it is.
+/// A commanded joint and its channel.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct CommandedJoint {
     pub(super) name: String,
     pub(super) channel: usize,
-    /// Radians or metres in a unit of the channel.
+    /// Radians or metres per unit of the channel.
     pub(super) unit: f64,
 }
 
-/// The joints (n) in the order of a command, from (channel, joint) pairs; no pairs: each channel is the joint of its name.
+/// The joints (n) in the order of a command, from (channel, joint) pairs. Without pairs, each channel is the joint of its
+/// name.
 pub(super) fn commanded(model: &Model, pairs: &[(String, String)]) -> Result<Vec<CommandedJoint>, ControllerError> {
     let channels = model.channels();
     let own: Vec<(String, String)> = channels.iter().map(|channel| (channel.clone(), channel.clone())).collect();

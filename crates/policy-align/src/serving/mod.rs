@@ -1,4 +1,4 @@
-//! A policy in command of a robot: joint states in, velocities out, zero wherever it must not move.
+//! A policy that commands a robot: joint states in, velocities out, zero whenever it must not move.
 
 mod controller;
 mod error;

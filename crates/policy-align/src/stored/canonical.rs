@@ -5,8 +5,8 @@ use std::path::Path;
 use serde_json::Value;
 use sha2::{Digest as _, Sha256};
 
-/// SHA-256, hexadecimal, of the canonical text of a value: no white space, members of objects in the order of their
-/// names, numbers as serde_json writes them. White space and order in a file do not change it; everything else does.
+/// SHA-256, hexadecimal, of the canonical text of a value: no white space, object members sorted by name, numbers as
+/// serde_json writes them. It does not depend on white space and order in a file, but on everything else.
 pub(crate) fn checksum(value: &Value) -> String {
     let mut text = String::new();
     write(value, &mut text);
@@ -18,10 +18,10 @@ pub fn sha256(bytes: &[u8]) -> String {
     hexadecimal(&Sha256::digest(bytes))
 }
 
-/// SHA-256 of what a file holds, and how many bytes that is; read piece by piece.
+/// SHA-256 of a file's contents and their size in bytes; the file is read in pieces.
 ///
 /// # Errors
-/// What the system says.
+/// The system's error.
 pub fn sha256_of_file(path: &Path) -> io::Result<(String, u64)> {
     let (mut file, mut hasher, mut bytes) = (File::open(path)?, Sha256::new(), 0);
     let mut piece = vec![0; 1 << 16];
@@ -52,7 +52,7 @@ fn write(value: &Value, text: &mut String) {
         }
         Value::Object(members) => {
             let mut members: Vec<_> = members.iter().collect();
-            // serde_json keeps the order of the file where any crate of the program wants it to.
+            // serde_json keeps the order of the file if any crate of the program enables that.
             members.sort_by_key(|(name, _)| *name);
             text.push('{');
             for (name, member) in members {

@@ -1,4 +1,4 @@
-//! Models as files.
+//! Storage of models in files.
 
 mod canonical;
 mod error;

@@ -1,4 +1,4 @@
-//! Models as JSON with a checksum. `docs/model-file.md` describes it.
+//! Models as JSON with a checksum, described in `docs/model-file.md`.
 
 use std::path::Path;
 
@@ -13,7 +13,7 @@ use crate::{Model, StateChannel, Trust, Verdict};
 
 const FORMAT: &str = "policy-align model";
 
-/// The latest version; this and all before it are read. Models without context are written as the first.
+/// The latest version; it and all earlier ones can be read. Models without context are written as version 1.
 const VERSION: u64 = 2;
 
 /// Header of a model file.
@@ -26,7 +26,7 @@ struct Stored<'a> {
     model: &'a Model,
 }
 
-/// The checksum that a model file of these bytes has: a trust report names its model by it.
+/// The checksum stored in a model file; a trust report refers to its model by it.
 pub fn checksum_of(model_file: &[u8]) -> Option<String> {
     #[derive(Deserialize)]
     struct Named {
@@ -36,13 +36,13 @@ pub fn checksum_of(model_file: &[u8]) -> Option<String> {
 }
 
 impl Model {
-    /// Bytes of a file, at most.
+    /// Largest size of a file in bytes.
     pub const LARGEST: u64 = 256 << 20;
 
-    /// The text of a model file: one JSON document, numbers to their last bit.
+    /// The text of a model file: one JSON document, with all digits of the numbers.
     ///
     /// # Errors
-    /// [`ModelError::Unwritable`] if it could not be read again, as with a number that is not finite.
+    /// [`ModelError::Unwritable`] if it could not be read back, for instance because a number is not finite.
     pub fn to_json(&self) -> Result<String, ModelError> {
         let unwritable = |path: &str, reason: String| ModelError::Unwritable { path: path.to_owned(), reason };
         let version = if self.context.is_empty() { 1 } else { VERSION };
@@ -57,10 +57,10 @@ impl Model {
         }
     }
 
-    /// The model of a file's bytes. What it predicts is the same to the last bit as before it was stored.
+    /// Reads a model from the bytes of a file. Its predictions are the same to the last bit as before it was stored.
     ///
     /// # Errors
-    /// [`ModelError`], with the place where the text is at fault.
+    /// [`ModelError`], with the place of the fault.
     pub fn from_json(bytes: &[u8]) -> Result<Model, ModelError> {
         if bytes.iter().find(|byte| !byte.is_ascii_whitespace()) != Some(&b'{') {
             return Err(ModelError::NotAModel { found: "the file is no JSON object".to_owned() });
@@ -88,7 +88,7 @@ impl Model {
         }
     }
 
-    /// Writes a model file, wholly or not at all.
+    /// Writes a model file completely or not at all.
     ///
     /// # Errors
     /// As [`Model::to_json`], and [`ModelError::File`].
@@ -104,7 +104,7 @@ impl Model {
         Model::from_json(&demo_io::read_bytes(path, Self::LARGEST)?)
     }
 
-    /// Inconsistencies of the model, with their place.
+    /// An inconsistency of the model, with its place.
     fn fault(&self) -> Option<(String, String)> {
         let positive = |value: f64| value > 0.0 && value.is_finite();
         let n = self.learnt.policy().dim();
@@ -159,7 +159,7 @@ fn check_format(members: &Map<String, Value>) -> Result<(), ModelError> {
     }
 }
 
-/// A verdict as the file has it.
+/// A verdict as written in the file.
 fn word(verdict: Verdict) -> String {
     serde_json::to_value(verdict).ok().and_then(|word| word.as_str().map(str::to_owned)).unwrap_or_default()
 }
@@ -169,7 +169,7 @@ fn without_checksum(mut members: Map<String, Value>) -> Value {
     Value::Object(members)
 }
 
-/// Messages of what was found in a file have one line and end some time.
+/// Limits text from a file to one line and 200 characters for messages.
 fn one_line(text: &str) -> String {
     let plain: String = text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
     if plain.chars().count() <= 200 { plain } else { plain.chars().take(200).collect::<String>() + " …" }

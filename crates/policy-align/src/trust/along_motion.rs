@@ -1,4 +1,4 @@
-//! What movements say against a policy: findings on r − nᵀπ̂.
+//! Findings on the residuals r − nᵀπ̂ of movements against a policy.
 
 use gp::Rows;
 use motion::Policy;
@@ -12,7 +12,8 @@ use super::unexplained::unexplained;
 use crate::Finding;
 use crate::along::along_movements;
 
-/// Findings on velocities beside a policy's part along them, which was learnt `from_pushes` or not. There are none with a robot's inertia, which turns that part.
+/// Findings on the difference between speeds and the policy's component along them; the policy was learnt `from_pushes` or not. With a
+/// robot's inertia there are none, because it rotates that component.
 pub(crate) fn along_the_motion(
     policy: &dyn Policy,
     rows: &Rows,
@@ -28,7 +29,7 @@ pub(crate) fn along_the_motion(
     findings.extend(differing_goals(&movements, prepared, numbers));
     findings.extend(friction(&movements, rows.len()));
     findings.extend(slow_starts(&movements, rows));
-    // Noise and pushes are not of the policy either.
+    // Noise and pushes also leave residuals.
     if rows.variances().is_none() && !from_pushes {
         let predicted = numbers.held_out_error <= TrustNumbers::GOOD_HELD_OUT_ERROR;
         findings.extend(unexplained(movements, predicted));

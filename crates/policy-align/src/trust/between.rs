@@ -5,18 +5,18 @@ use nalgebra::{DMatrix, DVector};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-/// Random starts.
+/// Number of random starts.
 const STARTS: usize = 24;
-/// States evaluated along each roll-out, and steps between two of them.
+/// Number of states evaluated along each roll-out, and steps between two of them.
 const STATES: usize = 8;
 const STEPS: usize = 10;
-/// A start lies on the line through two demonstrated ones, as far beyond either as this share of their distance.
+/// A start lies on the line through two demonstrated ones, beyond either by at most this share of their distance.
 const BEYOND: f64 = 0.25;
-/// The policy is uncertain where its error bars are over this share of its standard deviation.
+/// The policy is uncertain if its error bars exceed this share of its standard deviation.
 const SURE: f64 = 0.5;
 
-/// Share of the states on unconstrained roll-outs from random starts at which the policy's error bars are as large as half of what it
-/// varies by; none if it has no error bars. `variance`: mean of ‖π̂ − mean‖² over the demonstrations.
+/// Share of the states on unconstrained roll-outs from random starts at which the policy's error bars exceed half of its standard
+/// deviation; `None` if it has no error bars. `variance`: mean of ‖π̂ − mean‖² over the demonstrations.
 pub(crate) fn share_unknown(policy: &dyn LearntPolicy, demonstrations: &Demonstrations, variance: f64) -> Option<f64> {
     let movements = demonstrations.trajectories();
     let mut rng = ChaCha8Rng::seed_from_u64(0);
@@ -43,7 +43,7 @@ pub(crate) fn share_unknown(policy: &dyn LearntPolicy, demonstrations: &Demonstr
     Some(unknown as f64 / (STARTS * STATES) as f64)
 }
 
-/// Error bars of the states, (n, N); none if the policy has none.
+/// Error bars at the states, (n, N); `None` if the policy has none.
 fn deviations(policy: &dyn LearntPolicy, states: &[DVector<f64>]) -> Option<DMatrix<f64>> {
     policy.certainty(DMatrix::from_columns(states).as_view()).deviations
 }

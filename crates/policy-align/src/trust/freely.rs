@@ -3,12 +3,12 @@
 use motion::{Demonstrations, Policy, upper_median};
 use nalgebra::DVector;
 
-/// Starts followed, at most.
+/// Largest number of starts.
 const STARTS: usize = 20;
-/// Each for so many times the usual movement, in so many steps.
+/// Duration of each roll-out in median durations of a movement, and its number of steps.
 const TIMES: f64 = 5.0;
 const STEPS: usize = 200;
-/// The demonstrated region is wider than the demonstrations by this share of their extent.
+/// Share of their extent by which the demonstrated region is larger than the demonstrations.
 const BEYOND: f64 = 0.3;
 
 /// Share of the demonstrated starts from which the policy, rolled out without constraints, leaves the demonstrated region.
@@ -31,7 +31,7 @@ pub(crate) fn share_leaving(policy: &dyn Policy, demonstrations: &Demonstrations
     let leaves = |start: &DVector<f64>| {
         let mut state = start.clone();
         (0..STEPS).any(|_| {
-            // The midpoint rule: a whirl does not spiral out by its steps alone.
+            // The midpoint rule: its discretization error does not make a rotation spiral outwards.
             let middle = &state + policy.action(state.as_view()) * (step / 2.0);
             state += policy.action(middle.as_view()) * step;
             let inside = |axis: usize| (low[axis]..=high[axis]).contains(&state[axis]);

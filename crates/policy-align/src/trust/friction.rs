@@ -6,11 +6,12 @@ use prepare::numbers::percent;
 use crate::along::{Along, LEAST_T, Regression};
 use crate::{Finding, Verdict};
 
-/// Least missing speed, as a share of the root mean square; its t over movements is 5 and more with friction, below 3.5 with all else. The policy
-/// absorbs some of it, so that the share is too low.
+/// Least missing speed, as a share of the root mean square. Its t over movements is 5 and more with friction, below 3.5 with all else. The
+/// policy absorbs some of it, so that the share is too low.
 const MISSING: f64 = 0.01;
 
-/// Says that what constraints turn aside is slower than r = nᵀπ, by about the same everywhere; of `rows` rows, those that move by movement.
+/// A finding if movements that constraints deflect are slower than r = nᵀπ by about the same amount everywhere. `rows`: number of all rows;
+/// `movements` holds those that move.
 pub(crate) fn friction(movements: &[Vec<Along>], rows: usize) -> Option<Finding> {
     let (missing, t) = missing_speed(movements, rows)?;
     (missing > MISSING && t > LEAST_T).then(|| Finding {
@@ -23,7 +24,7 @@ pub(crate) fn friction(movements: &[Vec<Along>], rows: usize) -> Option<Finding>
     })
 }
 
-/// Least squares of r − nᵀπ̂ = −f + ε nᵀπ̂ over rows: f in root mean squares of the speed, and its t with movements as units.
+/// Least squares of r − nᵀπ̂ = −f + ε nᵀπ̂ over rows: f relative to the root mean square speed, and its t with movements as the units.
 fn missing_speed(movements: &[Vec<Along>], rows: usize) -> Option<(f64, f64)> {
     let missing = Regression::of(movements, |sample| Vector2::new(-1.0, sample.wanted))?;
     let power: f64 = movements.iter().flatten().map(|sample| sample.speed * sample.speed).sum();
@@ -39,7 +40,7 @@ mod tests {
     use super::*;
     use crate::along::{Bowl, along_movements};
 
-    /// Velocities (1 + ε) nᵀπ n, slower by what `slower` makes of the sample, in 12 movements.
+    /// Velocities (1 + ε) nᵀπ n in 12 movements, each reduced by `slower`, a function of the sample.
     fn rows(gain: f64, seed: u32, slower: impl Fn(usize) -> f64) -> gp::Rows {
         let angle = |i: usize| f64::from(seed) + 2.4 * i as f64;
         let x = |i: usize| DVector::from_vec(vec![2.0 + angle(i).sin(), (1.7 * angle(i)).cos()]);
@@ -54,7 +55,8 @@ mod tests {
     }
 
     proptest! {
-        /// Friction is found by its size, whatever the policy's size is wrong by; noise that slows as often as not is none.
+        /// Friction is found by its size, whatever the error of the policy's size. Noise that slows as often as it accelerates is not
+        /// friction.
         #[test]
         fn friction_is_what_is_missing(gain in 0.8..1.2f64, friction in 0.05..0.4f64, seed in 0..1000u32) {
             let rows = super::tests::rows(gain, seed, |i| friction * (1.0 + 0.1 * (5.3 * i as f64).sin()));

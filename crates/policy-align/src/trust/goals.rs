@@ -8,17 +8,18 @@ use super::numbers::TrustNumbers;
 use crate::along::Along;
 use crate::{Finding, Verdict};
 
-/// Share of what the policy does not explain that a constant velocity of each movement explains.
+/// Least share of the policy's residuals that a constant velocity of each movement must explain.
 const OWN: f64 = 0.35;
-/// Held-out error below which that has other reasons: limits, friction and gains that change leave less.
+/// A smaller held-out error has other causes: limits, friction and varying gains.
 const UNPREDICTED: f64 = 0.1;
-/// Ridge of that velocity, as a share of the rows that it is learnt from.
+/// Ridge of the estimate of that velocity, as a share of the number of its rows.
 const RIDGE: f64 = 0.05;
-/// Noise above this share of the squared steps explains enough.
+/// Noise above this share of the squared steps is a sufficient explanation.
 const NOISY: f64 = 0.1;
 const NEXT: &str = "if the goal, an object or a load differs, record it and name its columns with --context, or learn each goal from its own movements";
 
-/// Says what makes movements differ where the policy does not predict them. It accuses no policy that does, with however many goals.
+/// A finding on how movements differ if the policy does not predict them. There is none if the policy predicts them, however many goals
+/// there are.
 pub(crate) fn differing_goals(
     movements: &[Vec<Along>],
     prepared: &Prepared,
@@ -48,7 +49,7 @@ fn predicts(numbers: &TrustNumbers) -> bool {
         && numbers.halves.zip(numbers.good_halves()).is_none_or(|(halves, good)| halves <= good)
 }
 
-/// Share of Σ(r − nᵀπ̂)² that nᵀc explains with one c (n) a movement, learnt from every other quarter of it.
+/// Share of Σ(r − nᵀπ̂)² that nᵀc explains with one c (n) per movement, estimated from every other quarter of it.
 fn own_share(movements: &[Vec<Along>]) -> Option<f64> {
     let row = |sample: &Along| (sample.direction.clone(), sample.speed - sample.wanted);
     let errors: Vec<Vec<Row>> = movements.iter().map(|samples| samples.iter().map(row).collect()).collect();
@@ -60,14 +61,14 @@ fn own_share(movements: &[Vec<Along>]) -> Option<f64> {
     (all > 0.0).then(|| 1.0 - errors.iter().map(left).sum::<f64>() / all)
 }
 
-/// The first and third quarter of some rows, and the others.
+/// The first and third quarter of the rows, and the others.
 fn quarters(rows: &[Row]) -> (Vec<Row>, Vec<Row>) {
     let quarter = rows.len().div_ceil(4).max(1);
     let of = |part: usize| rows.chunks(quarter).skip(part).step_by(2).flatten().cloned().collect();
     (of(0), of(1))
 }
 
-/// Σ(e − nᵀc)² over some rows, c the ridge estimate from others.
+/// Σ(e − nᵀc)² over the rows, with the ridge estimate c from `others`.
 fn left_by(rows: &[Row], others: &[Row]) -> f64 {
     let Some(dim) = rows.first().map(|(n, _)| n.len()) else { return 0.0 };
     let mut matrix = DMatrix::identity(dim, dim) * (RIDGE * others.len().max(1) as f64);
@@ -103,7 +104,7 @@ mod tests {
     }
 
     proptest! {
-        /// A velocity of its own in each movement explains all of a policy that knows none, one that changes from sample to sample nothing.
+        /// If π̂ = 0, a separate velocity of each movement explains everything; one that changes from sample to sample explains nothing.
         #[test]
         fn what_each_movement_has_of_its_own(seed in 0..1000u32, size in 0.1..10.0f64) {
             let rows = |every: usize| {

@@ -8,31 +8,31 @@ use prepare::numbers::{percent, short};
 use super::numbers::TrustNumbers;
 use crate::{Finding, LearnerChoice, StateChannel, Trust, Verdict};
 
-/// Left-out error along the path from which a policy is wrong.
+/// Left-out error along the path above which a policy is wrong.
 const WRONG: f64 = 0.5;
-/// Expected error of PolicyAlign's policy from which it is wrong.
+/// Expected error of PolicyAlign's policy above which it is wrong.
 const FAR: f64 = 0.8;
-/// An episode whose error is so many times the usual one is named.
+/// An episode is named if its error exceeds the median by this factor.
 const ODD: f64 = 10.0;
 /// Unconstrained motion covers all directions; less coverage than this may be a constraint.
 const SPREAD: f64 = 0.25;
-/// Share of uncertain states between the demonstrations from which other movements will meet them.
+/// Largest share of uncertain states between the demonstrations; above it, other movements will meet such states.
 const UNKNOWN: f64 = 0.1;
 
 /// Input of a verdict.
 pub(crate) struct VerdictInput<'a> {
     pub(crate) numbers: TrustNumbers,
-    /// Found while preparing.
+    /// Findings of `prepare`.
     pub(crate) findings: &'a [Finding],
     pub(crate) state: &'a [StateChannel],
-    /// Names of the movements learnt from.
+    /// Names of the movements in the training data.
     pub(crate) episodes: &'a [String],
     pub(crate) learner: LearnerChoice,
-    /// The reading that the user gave, if any.
+    /// The reading given by the user, if any.
     pub(crate) given: Option<Hypothesis>,
 }
 
-/// The findings, the worst first, and the verdict that follows.
+/// The findings, the worst first, and the resulting verdict.
 pub(crate) fn judge(evidence: VerdictInput<'_>) -> Trust {
     let VerdictInput { numbers, findings, state, episodes, learner, given } = evidence;
     let mut findings = findings.to_vec();
@@ -87,7 +87,8 @@ fn about_reading(
     }
 }
 
-/// Nothing was constrained, or one constraint always acted: who knows which may say so, where the learner heeds it.
+/// The finding that the data fit both no constraint and one common constraint. A reading given by the user resolves it, if the learner uses
+/// readings.
 fn about_two_readings(
     numbers: &TrustNumbers,
     given: (LearnerChoice, Option<Hypothesis>),
@@ -117,7 +118,7 @@ fn about_two_readings(
     }
 }
 
-/// Whose number it is, where the policy handed out is not the Gaussian process's.
+/// Names the source of a number if the model's policy is not the Gaussian process's.
 fn by_gp(numbers: &TrustNumbers) -> &'static str {
     if numbers.aligned.is_some() { " by the Gaussian process" } else { "" }
 }
@@ -183,8 +184,8 @@ fn about_error(numbers: &TrustNumbers, found: &mut dyn FnMut(Verdict, String, &s
     }
 }
 
-/// An episode that the others predict much worse than each other: another task, a fault of tracking, or a lone corner. It is in doubt if the
-/// others alone would be predicted well.
+/// Names an episode whose error, predicted from the others, is much larger than usual: another task, a tracking fault, or an isolated
+/// region. It makes the policy doubtful if the other episodes alone would be predicted well.
 fn about_episodes(numbers: &TrustNumbers, episodes: &[String], found: &mut dyn FnMut(Verdict, String, &str)) {
     let errors: Vec<f64> = numbers.episode_errors.iter().map(|&(_, error)| error).collect();
     let worst = numbers.episode_errors.iter().max_by(|(_, a), (_, b)| a.total_cmp(b));

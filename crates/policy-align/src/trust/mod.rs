@@ -1,4 +1,4 @@
-//! Checks of a learnt policy without the truth.
+//! Assesses a learnt policy without knowing the truth.
 
 mod along_motion;
 mod between;

@@ -1,14 +1,15 @@
-//! Constraints that pushed.
+//! Findings on constraints that push.
 
 use prepare::{Prepared, pressing};
 
 use crate::{Finding, Verdict};
 
-/// Pushes below this share of the policy's speed do not matter: where only they make movements predictable, something else differs.
+/// Pushes below this share of the policy's speed are negligible. If movements are only predictable with such pushes, they differ in
+/// something else.
 const PUSHES: f64 = 0.01;
 
-/// Adds what pushes mean, of a share `push` of the policy's speed: a remark where the policy was learnt in spite of them, which also settles the
-/// finding on a press, and a doubt elsewhere.
+/// Adds a finding on pushes of a share `push` of the policy's speed. It is a remark if the policy was learnt in spite of them, which also
+/// resolves the finding on a press; otherwise it is a doubt.
 pub(crate) fn pushed(push: f64, learnt: bool, prepared: &Prepared, findings: &mut Vec<Finding>) {
     let what = format!("constraints pushed, on average with {:.0} % of the policy's speed", 100.0 * push);
     let finding = match learnt {
@@ -35,7 +36,7 @@ fn found(verdict: Verdict, what: String, next: &str) -> Finding {
     Finding { verdict, what, next: next.to_owned() }
 }
 
-/// A press along directions that differ is learnt from.
+/// The policy was learnt from presses along varying directions, so the finding on them becomes a remark.
 fn settle(prepared: &Prepared, findings: &mut [Finding]) {
     let press = pressing(&prepared.demonstrations, &prepared.state);
     let of_press = findings.iter_mut().filter(|finding| Some(&**finding) == press.as_ref());

@@ -3,20 +3,20 @@ use serde::{Deserialize, Serialize};
 
 use super::numbers::TrustNumbers;
 
-/// How far to trust a policy; computed without knowing the truth.
+/// How far a policy can be trusted; computed without knowing the truth.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Trust {
-    /// The worst of the findings; good if there is none.
+    /// The verdict of the worst finding; good if there is none.
     pub verdict: Verdict,
-    /// Why, the worst first; those called good are mere remarks.
+    /// The findings, the worst first; those with the verdict good are remarks.
     pub findings: Vec<Finding>,
-    /// The numbers behind it.
+    /// The numbers behind the verdict.
     pub numbers: TrustNumbers,
 }
 
 impl Trust {
-    /// The verdict that follows from findings.
+    /// The verdict that results from findings.
     pub(crate) fn verdict_of(findings: &[Finding]) -> Verdict {
         findings.iter().map(|finding| finding.verdict).max().unwrap_or(Verdict::Good)
     }

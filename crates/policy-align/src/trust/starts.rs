@@ -1,4 +1,4 @@
-//! Movements that begin slower than the policy: from rest.
+//! Movements that begin more slowly than the policy, for instance from rest.
 
 use gp::Rows;
 use motion::mean_and_error;
@@ -7,14 +7,14 @@ use prepare::numbers::percent_of_all;
 use crate::along::{Along, FEW, LEAST_T};
 use crate::{Finding, Verdict};
 
-/// One in so many samples of a movement is its beginning.
+/// The beginning of a movement is one in this many samples.
 const BEGINNING: usize = 10;
-/// Least share of the speed that beginnings lack, beyond what the rest lacks.
+/// Least share of the speed missing at the beginning, in addition to that missing later.
 const MISSING: f64 = 0.1;
-/// Share from which the policy is doubtful: with less its error was below a tenth.
+/// Share above which the policy is doubtful; below it, its error was below a tenth.
 const MUCH: f64 = 0.4;
 
-/// Σ (nᵀπ̂ − r) nᵀπ̂ and Σ (nᵀπ̂)² of samples.
+/// Σ (nᵀπ̂ − r) nᵀπ̂ and Σ (nᵀπ̂)² over samples.
 #[derive(Debug, Clone, Copy, Default)]
 struct Lack {
     missing: f64,
@@ -27,8 +27,8 @@ impl Lack {
     }
 }
 
-/// Says that movements are slower than nᵀπ in their first tenth, but not afterwards: a hand or robot that accelerates from rest obeys no
-/// policy of the state alone.
+/// A finding if movements are slower than nᵀπ in their first tenth, but not afterwards. A hand or robot that accelerates from rest does
+/// not follow a policy of the state alone.
 pub(crate) fn slow_starts(movements: &[Vec<Along>], rows: &Rows) -> Option<Finding> {
     let (missing, t) = missing_at_starts(movements, rows)?;
     (missing > MISSING && t > LEAST_T).then(|| Finding {
@@ -41,7 +41,7 @@ pub(crate) fn slow_starts(movements: &[Vec<Along>], rows: &Rows) -> Option<Findi
     })
 }
 
-/// The mean over movements of what their beginning lacks beyond the rest, as a share of the speed, and its t.
+/// The share of speed missing at the beginning minus that missing later, as a mean over movements, and its t.
 fn missing_at_starts(movements: &[Vec<Along>], rows: &Rows) -> Option<(f64, f64)> {
     let mut lasts = vec![0; movements.len()];
     rows.indices().iter().for_each(|index| lasts[index.trajectory] = index.sample.max(lasts[index.trajectory]));
@@ -70,8 +70,8 @@ mod tests {
     use crate::along::{Bowl, along_movements};
 
     proptest! {
-        /// Movements that accelerate from rest lack at their beginning what they lack; those at a constant share of the speed, with noise,
-        /// nothing.
+        /// Movements that accelerate from rest lack the expected share at the beginning. Those at a constant share of the speed, with
+        /// noise, lack nothing.
         #[test]
         fn what_a_beginning_lacks_is_found(
             starts in prop::collection::vec(prop::array::uniform2(0.5..2.0f64), 5..12), ramp in 0.0..1.0f64, share in 0.5..1.5f64,

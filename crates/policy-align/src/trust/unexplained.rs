@@ -1,4 +1,4 @@
-//! Velocities without noise that the state does not explain: they depend on something else.
+//! Noise-free velocities that the state does not explain: they depend on another quantity.
 
 use nalgebra::Vector2;
 use prepare::numbers::percent_of_all;
@@ -6,24 +6,24 @@ use prepare::numbers::percent_of_all;
 use crate::along::{Along, LEAST_T, Regression};
 use crate::{Finding, Verdict};
 
-/// Share of the squared velocities that is doubtful.
+/// Share of the squared velocities above which a policy is doubtful.
 const MUCH: f64 = 0.05;
-/// The same where it changes with time: the policy has absorbed most of it.
+/// The same share if the residuals change with time; the policy has absorbed most of them.
 const SOME: f64 = 0.005;
-/// Share of it that a speed explains that grows or falls with time.
+/// Least share of the residuals explained by a speed that grows or falls with time.
 const TIMED: f64 = 0.25;
-/// Correlation of neighbouring samples above which it is no noise.
+/// Correlation of neighbouring samples above which the residuals are not noise.
 const PERSISTENT: f64 = 0.8;
-/// Share of the root mean square of the speeds below which rounding and rest decide the direction n, and with it r − nᵀπ̂.
+/// Share of the root mean square speed below which rounding and rest determine the direction n, and with it r − nᵀπ̂.
 const SLOW: f64 = 0.2;
 
-/// What a policy leaves of velocities that are not slow: r − nᵀπ̂.
+/// Residuals r − nᵀπ̂ of velocities that are not slow.
 struct Unexplained {
-    /// Its share of the squares.
+    /// Their share of the squares.
     share: f64,
-    /// Correlation of one sample's with the next one's.
+    /// Correlation of consecutive residuals.
     persistence: f64,
-    /// How it goes with the time since the start of the movement.
+    /// Regression on the time since the start of the movement.
     timed: Option<Regression>,
 }
 
@@ -47,8 +47,8 @@ impl Unexplained {
     }
 }
 
-/// Says that velocities without noise depend on something else than the state. Where left-out movements are not
-/// `predicted` either, it only adds that time is the cause.
+/// A finding if noise-free velocities depend on more than the state. If left-out movements are not `predicted` either, it is only made
+/// if time is the cause.
 pub(crate) fn unexplained(movements: Vec<Vec<Along>>, predicted: bool) -> Option<Finding> {
     let Unexplained { share, persistence, timed } = Unexplained::of(movements);
     let timed = timed.filter(|timed| timed.share > TIMED && timed.t.abs() > LEAST_T);
@@ -75,7 +75,7 @@ mod tests {
     use super::*;
     use crate::along::{Bowl, along_movements};
 
-    /// Twelve movements of 40 samples whose velocities are those of the bowl times `gain` of the movement and the time, 0 to 1.
+    /// Twelve movements of 40 samples in the bowl, with velocities times `gain` of the movement and the time, 0 to 1.
     fn movements(seed: u32, gain: impl Fn(usize, f64) -> f64) -> Vec<Vec<Along>> {
         let indices: Vec<SampleIndex> = (0..480).map(|i| SampleIndex { trajectory: i / 40, sample: i % 40 }).collect();
         let time = |index: &SampleIndex| index.sample as f64 / 40.0;
@@ -91,8 +91,8 @@ mod tests {
     }
 
     proptest! {
-        /// Speeds that fall or grow with time are found and named, also if the policy has absorbed their mean; those that differ between
-        /// movements are found from 5 % of the squares on; noise is not.
+        /// Speeds that fall or grow with time are found and named, even if the policy has absorbed their mean. Differences between
+        /// movements are found from 5 % of the squares; noise is not.
         #[test]
         fn what_the_state_does_not_explain(seed in 0..1000u32, by in 0.3..0.9f64, growing: bool, little in 0.001..0.1f64) {
             let sign = if growing { 1.0 } else { -1.0 };

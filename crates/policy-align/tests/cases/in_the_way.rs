@@ -1,4 +1,4 @@
-//! A wall that all movements run into, and constraints that turn.
+//! A wall that all movements reach, and rotating constraints.
 
 use nalgebra::{DMatrix, DVector};
 use rand::{RngExt, SeedableRng};
@@ -8,7 +8,7 @@ use rand_distr::StandardNormal;
 use super::unseen::{COUNT, case, movement, normal, of_movements, pressed};
 use super::{Case, FRESH, Named};
 
-/// Radians a second.
+/// Radians per second.
 const TURNING: f64 = 0.4;
 
 /// −∇ of a bowl with other curvatures along each axis, and bumps; its goal is near 0.
@@ -17,14 +17,14 @@ fn bowl(x: &DVector<f64>) -> DVector<f64> {
     DVector::from_fn(x.len(), |k, _| -(1.0 + k as f64 / last) * x[k] - 0.4 * (1.5 * x[k] + k as f64).cos())
 }
 
-/// White noise of velocities, as a share of them, and of positions, which spread by about 1.
+/// Adds white noise to velocities, relative to their size, and to positions, which have a spread of about 1.
 fn noisy(case: Case, share: f64, seed: u64) -> Case {
     let mut rng = ChaCha8Rng::seed_from_u64(seed ^ 0x2b);
     let case = case.velocity_noise(share, seed);
     case.each(|episode| episode.positions.apply(|x| *x += share * rng.sample::<f64, _>(StandardNormal)))
 }
 
-/// No movement gets over the wall n·x = −0.4, behind which is the goal; nothing else is in the way.
+/// No movement passes the wall n·x = −0.4 in front of the goal; there are no other constraints.
 fn walled(dim: usize, seed: u64) -> Case {
     const LEVEL: f64 = -0.4;
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
@@ -45,7 +45,7 @@ fn walled(dim: usize, seed: u64) -> Case {
     of_movements(&["x", "y", "z"][..dim], &movements)
 }
 
-/// One constraint for each movement, whose normal turns.
+/// One constraint per movement, with a rotating normal.
 fn turning(seed: u64) -> Case {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let movements: Vec<[DMatrix<f64>; 3]> = (0..COUNT + FRESH)
@@ -64,7 +64,7 @@ fn turning(seed: u64) -> Case {
     of_movements(&["q1", "q2", "q3", "q4", "q5", "q6"], &movements)
 }
 
-/// All of them.
+/// All cases.
 pub(crate) fn all() -> Vec<Named> {
     vec![
         case("a wall in the way of all, 2-D", |s| walled(2, s)),

@@ -1,4 +1,4 @@
-//! Recordings with their truth, good and bad, as laboratories make them.
+//! Recordings with their truth, good and bad, typical of laboratories.
 
 mod in_the_way;
 mod unseen;
@@ -13,25 +13,25 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::StandardNormal;
 
-/// Movements of the same kind that no learner sees.
+/// Number of test movements of the same kind, which no learner sees.
 const FRESH: usize = 20;
 /// A policy is right below this error (nUPE).
 const RIGHT: f64 = 0.15;
 
-/// Recordings and what is true of them.
+/// Recordings with their truth.
 pub(crate) struct Case {
     pub(crate) recordings: Recordings,
-    /// States of fresh movements, (n, M), in true units.
+    /// States of the test movements, (n, M), in true units.
     pub(crate) states: DMatrix<f64>,
-    /// The true policy there, (n, M), in true units per second.
+    /// The true policy at these states, (n, M), in true units per second.
     pub(crate) actions: DMatrix<f64>,
-    /// What was recorded is the truth times this, (n).
+    /// Factors from the truth to the recordings, (n).
     pub(crate) units: DVector<f64>,
     /// Recorded seconds in one true second.
     pub(crate) seconds: f64,
 }
 
-/// Whether velocities are in the file.
+/// Whether the file contains velocities.
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) enum Has {
     Velocities,
@@ -39,7 +39,7 @@ pub(crate) enum Has {
 }
 
 impl Case {
-    /// The first `count` movements to learn from, the rest to judge.
+    /// The first `count` movements are for learning, the rest for testing.
     pub(crate) fn of(recordings: &[Recording], count: usize, has: Has) -> Self {
         let dim = recordings[0].truth.states.nrows();
         let episode = |(at, recording): (usize, &Recording)| Episode {
@@ -76,7 +76,7 @@ impl Case {
         self.states.nrows()
     }
 
-    /// nUPE at the fresh states, in true units. `scales`: what the learner multiplied states with.
+    /// nUPE at the test states, in true units. `scales`: factors by which the learner multiplied states.
     pub(crate) fn error(&self, policy: &dyn LearntPolicy, scales: &DVector<f64>) -> f64 {
         let factor = self.units.component_mul(scales);
         let mut learnt = self.states.clone();
@@ -87,7 +87,7 @@ impl Case {
         metrics::nupe(&self.actions, &learnt).expect("learnt policies are finite")
     }
 
-    /// The same in other units.
+    /// The case in other units.
     pub(crate) fn in_units(mut self, units: &[f64]) -> Self {
         self.units = DVector::from_column_slice(units);
         for episode in &mut self.recordings.episodes {
@@ -121,7 +121,7 @@ impl Case {
     }
 }
 
-/// A policy of one's own.
+/// A policy given by a function.
 pub(crate) struct Own<F>(pub usize, pub F);
 
 impl<F: Fn(&[f64]) -> Vec<f64> + Send + Sync> Policy for Own<F> {
@@ -134,13 +134,13 @@ impl<F: Fn(&[f64]) -> Vec<f64> + Send + Sync> Policy for Own<F> {
     }
 }
 
-/// Which constraints hold.
+/// The active constraints.
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) enum Under {
     Nothing,
-    /// A random direction is forbidden, another after so many seconds.
+    /// A random direction is blocked, and another one after this number of seconds.
     Changing(f64),
-    /// One direction is forbidden, always the same.
+    /// The same direction is always blocked.
     Fixed,
 }
 
@@ -163,7 +163,7 @@ impl Plane {
         self.each(seed, |constraint, start| self.roll_out.record(potential, constraint, start.as_view()).unwrap())
     }
 
-    /// Several policies, one after the other.
+    /// Applies several policies, one after the other.
     pub(crate) fn policies(&self, policies: &[&dyn Policy], seed: u64) -> Vec<Recording> {
         let mut at = 0;
         self.each(seed, |constraint, start| {
@@ -214,7 +214,7 @@ pub(crate) fn sinusoid() -> Sinusoidal {
     Sinusoidal { amplitude: 0.1 }
 }
 
-/// `seconds` of movement at so many samples a second.
+/// `seconds` of movement at `hertz` samples per second.
 pub(crate) fn at_rate(hertz: f64, seconds: f64) -> RollOut {
     RollOut { time_step: 1.0 / hertz, n_samples: (seconds * hertz) as usize, sub_steps: 1 }
 }
@@ -248,7 +248,7 @@ fn case(name: &'static str, make: impl Fn(u64) -> Case + Send + Sync + 'static) 
     Named { name, make: Box::new(make), right: RIGHT }
 }
 
-/// All of them.
+/// All cases.
 #[allow(clippy::too_many_lines, reason = "a list")]
 pub(crate) fn all() -> Vec<Named> {
     use Has::{Positions, Velocities};
@@ -389,7 +389,7 @@ pub(crate) fn all() -> Vec<Named> {
             })
         }),
         case("uneven stamps", move |s| {
-            // Every movement sampled at times of its own, from a fine simulation.
+            // Every movement is sampled at different times, from a fine simulation.
             let mut rng = ChaCha8Rng::seed_from_u64(s ^ 6);
             let fine = Plane { roll_out: at_rate(50.0, 40.0), ..Plane::default() }.potential(&sinusoid(), s);
             Case::of(&fine, 40, Positions).each(move |e| {

@@ -1,4 +1,4 @@
-//! What recordings cannot show, or show only to those who look: presses, limits, lags, orientations, goals.
+//! Faults that recordings do not show, or only under special checks: presses, limits, lags, orientations, goals.
 
 use std::f64::consts::TAU;
 
@@ -15,12 +15,12 @@ const SAMPLES: usize = 50;
 const STEP: f64 = 0.05;
 /// Euler steps between two samples.
 const SUB_STEPS: usize = 10;
-/// Constraints change after so many samples.
+/// Number of samples after which constraints change.
 const PHASE: usize = 25;
 
 type Vector = DVector<f64>;
 type Random = ChaCha8Rng;
-/// The policy of a movement, of time and state, and what the robot makes of it.
+/// The policy of a movement as a function of time and state, and the velocity with which the robot executes it.
 pub(super) type Taught = (Box<dyn Fn(f64, &Vector) -> Vector>, Box<dyn Fn(f64, &Vector) -> Vector>);
 
 /// A bumpy bowl: −∇(½|x|² + 0.4 Σ sin aₖᵀx).
@@ -34,14 +34,14 @@ fn bowl(x: &Vector) -> Vector {
     policy
 }
 
-/// Usual size of the bowl's policy where movements begin.
+/// Typical magnitude of the bowl's policy where movements begin.
 const USUAL: f64 = 1.7;
 
 pub(super) fn normal(dim: usize, rng: &mut Random) -> Vector {
     DVector::from_fn(dim, |_, _| rng.sample::<f64, _>(StandardNormal)).normalize()
 }
 
-/// `n` turned by up to `most` radians.
+/// `n` rotated by up to `most` radians.
 fn tilted(n: &Vector, most: f64, rng: &mut Random) -> Vector {
     let across = normal(n.len(), rng);
     let across = (&across - n * n.dot(&across)).normalize();
@@ -54,13 +54,13 @@ pub(super) fn pressed(n: &Vector, push: f64, policy: &Vector) -> Vector {
     policy + n * (push - n.dot(policy))
 }
 
-/// Random normals, one a phase.
+/// Random normals, one per phase.
 fn normals(dim: usize, rng: &mut Random) -> impl Fn(f64) -> Vector + use<> {
     let normals: Vec<Vector> = (0..SAMPLES.div_ceil(PHASE)).map(|_| normal(dim, rng)).collect();
     move |time| normals[((time / STEP + 1e-6) as usize / PHASE).min(normals.len() - 1)].clone()
 }
 
-/// A movement: states, what the robot did and what the policy would, each (n, N).
+/// A movement: states, the robot's velocities and the policy's, each (n, N).
 pub(super) fn movement(start: Vector, (policy, robot): &Taught) -> [DMatrix<f64>; 3] {
     let (mut x, mut columns) = (start, [Vec::new(), Vec::new(), Vec::new()]);
     for i in 0..SAMPLES {
@@ -75,7 +75,7 @@ pub(super) fn movement(start: Vector, (policy, robot): &Taught) -> [DMatrix<f64>
     columns.map(|columns| DMatrix::from_columns(&columns))
 }
 
-/// Movements of `dim` channels from starts in a cube; what is taught may differ from one to the next.
+/// Movements of `dim` channels from starts in a cube; `teach` may return another policy for each movement.
 fn taught(dim: usize, seed: u64, mut teach: impl FnMut(usize, &mut Random) -> Taught) -> Case {
     let mut rng = Random::seed_from_u64(seed);
     let movements: Vec<[DMatrix<f64>; 3]> = (0..COUNT + FRESH)
@@ -110,7 +110,7 @@ pub(super) fn of_movements(names: &[&str], movements: &[[DMatrix<f64>; 3]]) -> C
     }
 }
 
-/// The bowl, under constraints that change; `robot` makes its velocity of what they leave.
+/// The bowl, under changing constraints; `robot` computes its velocity from the constrained one.
 fn executed(dim: usize, seed: u64, robot: impl Fn(&Vector, &Vector) -> Vector + Clone + 'static) -> Case {
     taught(dim, seed, |_, rng| {
         let (normals, robot) = (normals(dim, rng), robot.clone());
@@ -124,7 +124,7 @@ fn executed(dim: usize, seed: u64, robot: impl Fn(&Vector, &Vector) -> Vector + 
     })
 }
 
-/// Pressed along normals within `tilt` radians of one.
+/// Movements pressed along normals within `tilt` radians of a common one.
 fn wiping(dim: usize, tilt: f64, seed: u64) -> Case {
     let mut about = None;
     taught(dim, seed, |_, rng| {
@@ -139,7 +139,7 @@ fn limited(policy: Vector, limit: f64) -> Vector {
     if speed > limit { policy * (limit / speed) } else { policy }
 }
 
-/// Velocities that were written down `samples` later, or earlier, than the states.
+/// Velocities recorded `samples` later, or earlier, than the states.
 fn late(case: Case, samples: isize) -> Case {
     case.each(|episode| {
         let written = episode.velocities.clone().expect("recorded");
@@ -148,7 +148,7 @@ fn late(case: Case, samples: isize) -> Case {
     })
 }
 
-/// Goals on a circle, one after the other.
+/// Goals on a circle, in turn.
 fn goals(dim: usize, count: usize, seed: u64, constrained: bool) -> Case {
     taught(dim, seed, |at, rng| {
         let angle = TAU * (at % count) as f64 / count as f64;
@@ -171,7 +171,7 @@ fn gain(dim: usize, by: f64, seed: u64, constrained: bool) -> Case {
     })
 }
 
-/// Policy and constraint of a movement towards a goal that swings, or whose speed falls with time.
+/// Policy and constraint of a movement towards an oscillating goal, or with a speed that falls with time.
 fn timed(dim: usize, swings: bool, seed: u64) -> Case {
     taught(dim, seed, |_, rng| {
         let normals = normals(dim, rng);
@@ -188,7 +188,7 @@ fn timed(dim: usize, swings: bool, seed: u64) -> Case {
     })
 }
 
-/// A gripper turns to one orientation; constraints block turning about some axis.
+/// A gripper rotates towards one orientation; constraints block rotation about some axis.
 fn orientations(seed: u64, constrained: bool, flips: bool) -> Case {
     let mut rng = Random::seed_from_u64(seed);
     let rate = |q: &UnitQuaternion<f64>| -> Vector3<f64> { q.scaled_axis() * -1.2 };
@@ -208,7 +208,7 @@ fn orientations(seed: u64, constrained: bool, flips: bool) -> Case {
         let mut sign = 1.0;
         for i in 0..SAMPLES {
             let time = STEP * i as f64;
-            // The first sample has the sign that the truth is given in.
+            // The first sample has the sign of the truth.
             if flips && at < COUNT && (at, i) != (0, 0) && (i == 0 || rng.random_bool(0.03)) {
                 sign = if rng.random_bool(0.5) { 1.0 } else { -1.0 };
             }
@@ -227,8 +227,8 @@ fn orientations(seed: u64, constrained: bool, flips: bool) -> Case {
     of_movements(&["qx", "qy", "qz", "qw"], &movements)
 }
 
-/// The bowl on spheres about 0, the one of radius 1 or for each movement another, or on cylinders; half of the movements also under
-/// constraints that change.
+/// The bowl on spheres about 0, with radius 1 or a different one for each movement, or on cylinders; half of the movements are also
+/// under changing constraints.
 fn on_surfaces(round: bool, one: bool, seed: u64) -> Case {
     let mut rng = Random::seed_from_u64(seed);
     let across = move |x: &Vector| DVector::from_vec(vec![x[0], x[1], if round { x[2] } else { 0.0 }]);
@@ -250,19 +250,19 @@ fn on_surfaces(round: bool, one: bool, seed: u64) -> Case {
     of_movements(&["x", "y", "z"], &movements)
 }
 
-/// A policy is right below this error (nUPE), which is less than elsewhere: what is asked here is whether it is named.
+/// A policy is right below this error (nUPE). It is smaller than elsewhere, because these cases test whether a fault is named.
 const RIGHT: f64 = 0.1;
 
 pub(super) fn case(name: &'static str, make: impl Fn(u64) -> Case + Send + Sync + 'static) -> Named {
     Named { right: RIGHT, ..super::case(name, make) }
 }
 
-/// Without recorded velocities.
+/// Removes recorded velocities.
 fn positions_only(case: Case) -> Case {
     case.each(|episode| episode.velocities = None)
 }
 
-/// All of them.
+/// All cases.
 pub(crate) fn all() -> Vec<Named> {
     let saturated = |share: f64| move |n: &Vector, u: &Vector| limited(pressed(n, 0.0, u), share * USUAL);
     let each_limited = |n: &Vector, u: &Vector| pressed(n, 0.0, u).map(|u| u.clamp(-0.5 * USUAL, 0.5 * USUAL));

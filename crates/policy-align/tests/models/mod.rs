@@ -1,4 +1,4 @@
-//! Models of the toy system, one of each learner, small enough to be read many times.
+//! Models of the toy system, one for each learner, small enough to be read many times.
 
 #![allow(dead_code, reason = "every test that has this module uses a part of it")]
 
@@ -22,7 +22,7 @@ pub(crate) fn toy(n_trajectories: usize, n_samples: usize) -> Demonstrations {
     demonstrations(&recordings).unwrap()
 }
 
-/// Movements down the same bowl that nothing constrains.
+/// Unconstrained movements down the same bowl.
 pub(crate) fn free(n_trajectories: usize, n_samples: usize) -> Demonstrations {
     let roll_out = RollOut { n_samples, ..RollOut::default() };
     let potential = ToySystem::default().potential;
@@ -40,7 +40,7 @@ pub(crate) fn rows(demonstrations: &Demonstrations) -> Rows {
     FrontEnd::Velocities.rows(demonstrations).unwrap()
 }
 
-/// Few rows: tests want a model, not a good one.
+/// Few rows: these tests need a model, not a good one.
 fn slope_gp() -> SlopeGp {
     SlopeGp { max_rows: 200, hyper_rows: 80, ..SlopeGp::default() }
 }
@@ -71,7 +71,7 @@ pub(crate) fn policy_align(demonstrations: &Demonstrations) -> Model {
     model(Learnt::PolicyAlign(Box::new(learnt)), demonstrations)
 }
 
-/// One of each learner, with its name.
+/// One model for each learner, with its name.
 pub(crate) fn one_of_each(demonstrations: &Demonstrations) -> [(&'static str, Model); 4] {
     [
         ("auto", auto(demonstrations)),
@@ -81,7 +81,7 @@ pub(crate) fn one_of_each(demonstrations: &Demonstrations) -> [(&'static str, Mo
     ]
 }
 
-/// A model around a policy.
+/// A model that contains the given policy.
 pub(crate) fn model(learnt: Learnt, demonstrations: &Demonstrations) -> Model {
     let channel = |axis: usize| {
         let mut values: Vec<f64> = demonstrations

@@ -1,4 +1,4 @@
-//! The program, run in a folder with a recording and a model of it.
+//! Runs the program in a folder with a recording and its model.
 
 #![allow(dead_code, reason = "every test that has this module uses a part of it")]
 
@@ -32,7 +32,7 @@ pub(crate) fn command(folder: &Path) -> Command {
     command
 }
 
-/// What came of a command line.
+/// The result of a command line.
 pub(crate) struct Ran {
     pub(crate) code: Option<i32>,
     pub(crate) out: String,
@@ -49,7 +49,7 @@ impl From<Output> for Ran {
     }
 }
 
-/// Runs a command line, its words between spaces.
+/// Runs a command line whose words are separated by spaces.
 pub(crate) fn run(line: &str) -> Ran {
     run_in(folder(), line)
 }

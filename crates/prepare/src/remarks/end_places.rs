@@ -3,12 +3,12 @@
 use motion::Demonstrations;
 use nalgebra::DVector;
 
-/// Ends nearer than this share of the extent of all movements are one place.
+/// Ends closer than this share of the extent of all movements count as one place.
 const NEAR: f64 = 0.05;
-/// Share of the movements that end where another does.
+/// Minimum share of the movements that end at the same place as another.
 const SHARED: f64 = 0.8;
 
-/// Number of places at which movements end, if most end where others do; none where each ends somewhere else.
+/// Number of places at which movements end, if most share a place with others; `None` if they end at different places.
 pub fn end_places(demonstrations: &Demonstrations) -> Option<usize> {
     let movements = demonstrations.trajectories();
     let ends: Vec<DVector<f64>> =

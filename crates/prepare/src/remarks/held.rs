@@ -2,14 +2,14 @@
 
 use motion::{Channel, Demonstrations, Finding, Verdict};
 
-/// Movements of fewer samples do not tell noise from motion.
+/// In movements of fewer samples, noise cannot be distinguished from motion.
 const SAMPLES: usize = 8;
-/// Σ(step)² over Σ(value − mean of its movement)², from which a channel is noise: that of white noise is 2, that of ten samples of an even motion
-/// .1, of more less.
+/// Σ(step)² divided by Σ(value − mean of its movement)² above which a channel is noise. White noise has 2, ten samples of uniform motion
+/// have .1, longer motion less.
 const NOISE: f64 = 1.5;
 
-/// Names channels that are held while noise remains, as that of an encoder: fits would take the noise for motion in a direction of its own.
-/// None if all channels are so.
+/// Reports channels that are held still while noise remains, for example that of an encoder: a fit would mistake the noise for motion in a
+/// separate direction. `None` if all channels are held.
 pub(crate) fn held(demonstrations: &Demonstrations, channels: &[Channel]) -> Option<Finding> {
     let long = || demonstrations.trajectories().iter().filter(|movement| movement.n_samples() >= SAMPLES);
     let is_held = |axis: &usize| {

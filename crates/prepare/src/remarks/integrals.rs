@@ -1,29 +1,29 @@
-//! Which channels are the velocities of others: whose integrals over time explain the steps of these.
+//! Detects channels that are velocities of others: their integrals over time explain the steps of these.
 
 use std::ops::Range;
 
 use motion::{Demonstrations, Trajectory};
 use nalgebra::DMatrix;
 
-/// Share of a channel's steps that its velocity explains, at least.
+/// Minimum share of a channel's steps that its velocity explains.
 const EXPLAINED: f64 = 0.97;
-/// Velocities are in one unit: factors of their steps differ by this share at most.
+/// Velocities have the same unit if the factors of their steps differ by at most this share.
 const ALIKE: f64 = 0.1;
-/// Stretches that are compared, at most, and samples in one.
+/// Maximum number of stretches to compare, and of samples in one.
 const STRETCHES: usize = 2000;
 const SAMPLES: usize = 10;
-/// Stretches of a movement that tell a factor for it alone.
+/// Minimum number of stretches of a movement that determine a separate factor for it.
 const OF_MOVEMENT: usize = 5;
-/// More channels are not compared movement by movement.
+/// Above this number, channels are not compared movement by movement.
 const MOST_BY_MOVEMENT: usize = 64;
 
-/// How far channels move in stretches of the movements.
+/// Displacements of channels in stretches of the movements.
 pub(super) struct Integrals {
-    /// (n, stretches).
+    /// Displacements, (n, stretches).
     steps: DMatrix<f64>,
-    /// Their integrals, (n, stretches).
+    /// Integrals of the channels over time, (n, stretches).
     over_time: DMatrix<f64>,
-    /// Seconds of each stretch, and its movement.
+    /// Duration of each stretch in seconds, and its movement.
     stretches: Vec<(f64, usize)>,
 }
 
@@ -35,10 +35,10 @@ struct Sums {
     squares: Vec<[f64; 3]>,
 }
 
-/// One channel and another that explains its steps.
+/// A channel and another one that explains its steps.
 struct Pair {
     channels: (usize, usize),
-    /// The step over the integral, in each group of stretches.
+    /// The step divided by the integral, in each group of stretches.
     factors: Vec<f64>,
     explained: f64,
 }
@@ -70,14 +70,15 @@ impl Integrals {
         Integrals { steps, over_time: integrals, stretches }
     }
 
-    /// Pairs of a channel and its velocity, in the order of the channels; none but for a block of each, or all alternating. `clock` is no velocity.
+    /// Pairs of a channel and its velocity, in the order of the channels. Empty unless they form a block of each, or alternate throughout.
+    /// `clock` is no velocity.
     pub(super) fn velocities(&self, clock: Option<usize>) -> Vec<(usize, usize)> {
         let all = 0..self.stretches.len();
         self.blocks(std::slice::from_ref(&all), clock)
     }
 
-    /// The same where each movement may have another time step, which one factor for all would not fit: the channels of a block
-    /// then agree on it in every movement.
+    /// The same if time steps may differ between movements, so that no single factor fits all: the channels of a block must agree on it in
+    /// every movement.
     pub(super) fn velocities_by_movement(&self, clock: Option<usize>) -> Vec<(usize, usize)> {
         let mut first = 0;
         let movements = self.stretches.chunk_by(|a, b| a.1 == b.1).map(|stretches| {
@@ -93,7 +94,7 @@ impl Integrals {
         let n = self.steps.nrows();
         let sums: Vec<Sums> = groups.iter().map(|group| self.sums(group)).collect();
         let all: Vec<f64> = (0..n).map(|i| sums.iter().map(|of| of.squares[i][0]).sum()).collect();
-        // What time alone explains needs no velocity.
+        // Motion that time alone explains needs no velocity.
         let is_even = |i: usize| sums.iter().map(|of| of.squares[i][2]).sum::<f64>() >= EXPLAINED * all[i];
         let pair = |i: usize, j: usize| {
             let (mut factors, mut explained) = (Vec::with_capacity(sums.len()), 0.0);
@@ -135,19 +136,19 @@ impl Integrals {
     }
 }
 
-/// Whether velocities have one unit, in each group of stretches.
+/// Whether velocities have the same unit, in each group of stretches.
 fn alike(a: &Pair, b: &Pair) -> bool {
     a.factors.iter().zip(&b.factors).all(|(a, b)| (a / b - 1.0).abs() <= ALIKE)
 }
 
-/// Each channel followed by its velocity, with the factors of `unit`: at least two pairs, of all `channels`.
+/// Each channel followed by its velocity, with the factors of `unit`: at least two pairs, covering all `channels`.
 fn alternating(unit: &Pair, all: &[Pair], channels: &[usize]) -> Option<Vec<(usize, usize)>> {
     let (pairs, []) = channels.as_chunks::<2>() else { return None };
     let found = |&[i, j]: &[usize; 2]| all.iter().any(|of| of.channels == (i, j) && alike(of, unit));
     (pairs.len() > 1 && pairs.iter().all(found)).then(|| pairs.iter().map(|&[i, j]| (i, j)).collect())
 }
 
-/// The pairs with the factors of `unit`, the velocities in the order of the channels and behind all of these.
+/// The pairs with the factors of `unit`, if the velocities are in the order of the channels and after all of them.
 fn block(unit: &Pair, all: &[Pair], n: usize) -> Vec<(usize, usize)> {
     let mut pairs: Vec<(usize, usize)> = Vec::new();
     for i in 0..n {

@@ -23,11 +23,11 @@ use crate::notes::Notes;
 use crate::numbers::{counted, percent, short};
 use crate::samples::noise::{Noise, resolution};
 
-/// A channel that spreads so many times as much as most others has another unit, it seems.
+/// A channel with this multiple of the spread of most others seems to have another unit.
 const MIXED: f64 = 20.0;
-/// Fewer episodes tell too little of constraints, and of places between them.
+/// Fewer episodes reveal too little about constraints, and about the regions between them.
 const FEW: usize = 8;
-/// An episode whose ends are this near, as a share of its length, is a loop.
+/// An episode is a loop if the distance of its ends is at most this share of its length.
 const LOOP: f64 = 0.05;
 /// Positions have few digits if a step of the last digit is this share of a channel's spread.
 const COARSE: f64 = 0.01;
@@ -39,19 +39,19 @@ pub(crate) fn about(demonstrations: &Demonstrations, state: &[StateChannel], noi
     coarse(demonstrations, &spreads(demonstrations), state, notes);
 }
 
-/// What depends on the scale of each channel.
+/// Findings that depend on the scale of each channel.
 pub(crate) fn of_scale(demonstrations: &Demonstrations, state: &[StateChannel], noise: &Noise) -> Vec<Finding> {
     let mixed = mixed_units(&spreads(demonstrations), state);
     let (press, limit) = (pressing(demonstrations, state), speed_limit(demonstrations, state, noise));
     [mixed, press, limit].into_iter().flatten().collect()
 }
 
-/// Standard deviation of every channel, (n).
+/// Standard deviation of each channel, (n).
 fn spreads(demonstrations: &Demonstrations) -> Vec<f64> {
     (0..demonstrations.dim()).map(|axis| standard_deviation(demonstrations.values(axis))).collect()
 }
 
-/// A channel whose values spread as if it had another unit than the others.
+/// Reports a channel whose spread suggests another unit than that of the others.
 fn mixed_units(spreads: &[f64], state: &[StateChannel]) -> Option<Finding> {
     let mut sorted: Vec<f64> = spreads.iter().copied().filter(|&spread| spread > 0.0).collect();
     sorted.sort_by(f64::total_cmp);

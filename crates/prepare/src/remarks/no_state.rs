@@ -1,18 +1,19 @@
-//! Channels that are no state: velocities of others, and time.
+//! Detects channels that are no state: velocities of others, and time.
 
 use motion::{Channel, Demonstrations, Finding, Trajectory, Verdict};
 
 use super::integrals::Integrals;
 
-/// More channels are not compared.
+/// Above this number, channels are not compared.
 const MOST: usize = 256;
-/// Steps of a clock differ by this share of a step at most.
+/// Maximum difference between steps of a clock, as a share of a step.
 const EVEN: f64 = 1e-3;
 
-/// Says which channels are velocities of others, or time, and the flags that read them as such.
+/// Reports channels that are velocities of others, or time, and the flags that assign these roles.
 ///
-/// A block of velocities follows a block of positions, at least two of them with one unit, or each channel is followed by its velocity. A clock has no name of its own, begins at one
-/// value in each of several movements and rises as time does. O(n² stretches + n samples) for n channels.
+/// A block of velocities follows a block of positions, with at least two of them in the same unit, or each channel is followed by its
+/// velocity. A clock has no specific name, begins at one value in each of several movements, and increases like time. O(n² stretches + n
+/// samples) for n channels.
 pub(crate) fn no_state(demonstrations: &Demonstrations, channels: &[Channel]) -> Option<Finding> {
     let n = channels.len();
     if n > MOST {
@@ -48,7 +49,7 @@ pub(crate) fn no_state(demonstrations: &Demonstrations, channels: &[Channel]) ->
     })
 }
 
-/// Whether a name is only a number behind a stem, as readers make them.
+/// Whether a name is only a stem and a number, as readers generate them.
 fn is_counted(name: &str) -> bool {
     name.trim_end_matches(|letter: char| letter.is_ascii_digit()).len() < name.len()
 }
@@ -69,7 +70,7 @@ fn is_clock(demonstrations: &Demonstrations, axis: usize) -> bool {
     movements.len() > 1 && rate > 0.0 && movements.iter().all(runs)
 }
 
-/// A name, or several that end in numbers which follow each other.
+/// A name, or several with the same stem and consecutive numbers.
 struct Run {
     stem: String,
     /// First and last number, if the name has one.
@@ -79,7 +80,7 @@ struct Run {
 impl Run {
     fn of(name: &str) -> Self {
         let stem = name.trim_end_matches(|letter: char| letter.is_ascii_digit());
-        // "x07" is another name than "x7".
+        // "x07" and "x7" are different names.
         match name[stem.len()..].parse() {
             Ok(number) if !stem.is_empty() && format!("{stem}{number}") == name => {
                 Run { stem: stem.to_owned(), numbers: Some((number, number)) }
@@ -88,7 +89,7 @@ impl Run {
         }
     }
 
-    /// Takes up the next name, if it follows.
+    /// Appends the next name if it continues the run.
     fn continues_with(&mut self, next: &Run) -> bool {
         match (&mut self.numbers, next.numbers) {
             (Some((_, last)), Some((number, _))) if self.stem == next.stem && number == *last + 1 => {
@@ -100,7 +101,7 @@ impl Run {
     }
 }
 
-/// `x0-3` for `x0`, `x1`, `x2`, `x3`; other names with commas between.
+/// `x0-3` for `x0`, `x1`, `x2`, `x3`; other names separated by commas.
 fn listed(names: &[&str]) -> String {
     let mut runs: Vec<Run> = Vec::new();
     for run in names.iter().map(|name| Run::of(name)) {
@@ -127,7 +128,7 @@ mod tests {
         names.iter().map(|&name| Channel { name: name.to_owned(), unit: None }).collect()
     }
 
-    /// Movements of which `sample(movement, time)` are the channels.
+    /// Movements whose channels are `sample(movement, time)`.
     fn movements(count: usize, dt: f64, sample: impl Fn(usize, f64) -> Vec<f64>) -> Demonstrations {
         let one = |k: usize| {
             let columns: Vec<DVector<f64>> = (0..60).map(|i| DVector::from_vec(sample(k, dt * f64::from(i)))).collect();
@@ -146,7 +147,7 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(32))]
 
-        /// Whatever the movements, the unit of velocities and the noise of some per mille.
+        /// For any movements, unit of velocities, and noise of a few per mille.
         #[test]
         fn a_block_of_velocities_is_found(
             n in 2usize..6,
@@ -176,7 +177,7 @@ mod tests {
             let flags = format!("--state s_{first}-{end} --velocity s_{}-{last}", end + 1);
             let expected = if clock { format!("--time s_0 {flags}") } else { flags };
             prop_assert_eq!(found.map(|finding| finding.next), Some(expected));
-            // Each channel beside its velocity, and then all channels are such pairs.
+            // Each channel followed by its velocity; then all channels are such pairs.
             let alternating = |k: usize, t: f64| -> Vec<f64> {
                 let own = (0..n).flat_map(|axis| [place(k, axis, t), rate(k, axis, t)]);
                 std::iter::once(t).filter(|_| clock).chain(own).collect()
@@ -195,7 +196,7 @@ mod tests {
         }
     }
 
-    /// Recordings whose time step is another in each movement than is believed: one factor for all would not fit.
+    /// Recordings whose movements have different time steps than assumed: one factor for all would not fit.
     #[test]
     fn velocities_at_other_time_steps_are_found() {
         let sample = |spread: f64| {
@@ -203,7 +204,7 @@ mod tests {
                 let (unit, phase) = (1.0 + spread * k as f64, k as f64);
                 let places = [(2.0 * t + phase).sin(), (1.3 * t - phase).cos()];
                 let rates = [2.0 * (2.0 * t + phase).cos(), -1.3 * (1.3 * t - phase).sin()];
-                // A constant explains what rises evenly, and is no velocity.
+                // A constant explains a uniform increase, but is no velocity.
                 vec![0.7 * t + phase, places[0], places[1], 1.0, unit * rates[0], unit * rates[1]]
             }
         };
@@ -216,7 +217,8 @@ mod tests {
         }
     }
 
-    /// What only looks so: one turning pair, a clock with a name, one that starts anywhere, a belt at constant speed.
+    /// Channels that only resemble velocities or time: one rotating pair, a clock with a name, one that starts anywhere, a belt at constant
+    /// speed.
     #[test]
     fn states_are_left_alone() {
         let turning = movements(6, 0.05, |k, t| vec![(t + k as f64).sin(), (t + k as f64).cos()]);

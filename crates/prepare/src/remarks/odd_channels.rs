@@ -1,15 +1,15 @@
-//! Channels that are no coordinates of the movement: switches, and copies of others.
+//! Detects channels that are no coordinates of the movement: switches, and copies of others.
 
 use motion::{Channel, Episode, Finding, Verdict};
 
 use crate::numbers::short;
 
-/// A copy differs by this share of the largest value at most, as digits are cut off.
+/// Maximum difference of a copy, as a share of the largest value, because digits may be cut off.
 const ALIKE: f64 = 1e-6;
-/// More channels are not compared.
+/// Above this number, channels are not compared.
 const MOST: usize = 256;
 
-/// Whether a channel takes two values only, and changes between them within a movement.
+/// Whether a channel has only two values, and changes between them within a movement.
 pub(crate) fn is_switch(episodes: &[Episode], axis: usize) -> bool {
     values(episodes, axis).is_some()
 }
@@ -21,13 +21,13 @@ fn values(episodes: &[Episode], axis: usize) -> Option<[f64; 2]> {
     let other = all().find_map(|row| row.iter().copied().find(|&value| value != first))?;
     let only = all().all(|row| row.iter().all(|&value| value == first || value == other));
     let changes = all().any(|row| row.iter().any(|&value| value != row[0]));
-    // Three samples have two values by chance.
+    // Three samples may have two values by chance.
     let count: usize = all().map(|row| row.len()).sum();
     (only && changes && count > 8).then(|| [first.min(other), first.max(other)])
 }
 
-/// Says which channels are switches, and which are others once more. A switch jumps, and no movement leads from one of its values to the
-/// other. A copy shows no motion of its own.
+/// Reports channels that are switches, and channels that are copies of others. A switch jumps, so that no movement leads from one of its
+/// values to the other. A copy shows no additional motion.
 pub(crate) fn odd_channels(episodes: &[Episode], channels: &[Channel]) -> Vec<Finding> {
     let n = channels.len();
     if !(2..=MOST).contains(&n) {
@@ -66,7 +66,7 @@ mod tests {
 
     use super::*;
 
-    /// Four movements of which `value(channel, movement, sample)` are the channels x, y, z.
+    /// Four movements with the channels x, y, z, given by `value(channel, movement, sample)`.
     fn found(value: impl Fn(usize, usize, usize) -> f64) -> Vec<(String, String)> {
         let one = |k: usize| Episode {
             name: k.to_string(),
@@ -97,7 +97,7 @@ mod tests {
         let copy = found(|axis, k, i| place(axis % 2, k, i) + if axis == 2 { 1e-9 } else { 0.0 });
         assert_eq!(copy.len(), 1);
         assert!(copy[0].0.starts_with("z has the values of x") && copy[0].1.starts_with("--ignore z,"), "{copy:?}");
-        // What is constant in a movement may be a context, and channels that never move are no copies.
+        // A channel that is constant within movements may be a context, and channels that never move are no copies.
         assert_eq!(found(|axis, k, i| if axis == 1 { (k % 2) as f64 } else { place(axis, k, i) }), []);
         assert_eq!(found(|axis, k, i| if axis == 0 { place(axis, k, i) } else { 0.0 }), []);
     }

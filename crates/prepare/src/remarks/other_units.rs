@@ -1,4 +1,4 @@
-//! Episodes in another unit than the others.
+//! Detects episodes in another unit than the others.
 
 use motion::{Episode, Finding, Verdict, standard_deviation, upper_median};
 use nalgebra::DVector;
@@ -8,24 +8,24 @@ use crate::numbers::counted;
 
 /// Sizes of movements in one unit leave no gap as large as this factor …
 const GAP: f64 = 8.0;
-/// … between groups that differ by this one.
+/// … between groups whose sizes differ by this factor.
 const APART: f64 = 30.0;
-/// Fewer movements have no usual size.
+/// With fewer movements there is no typical size.
 const FEWEST: usize = 4;
-/// Fewer that are smaller may be movements that constraints blocked.
+/// Minimum number of smaller episodes; fewer may be movements that constraints blocked.
 const FEWEST_SMALLER: usize = 3;
-/// Episodes that are named.
+/// Maximum number of episodes named in the finding.
 const NAMED: usize = 5;
-/// A factor between units explains one that is this factor from it at most: movements differ in size.
+/// A ratio of sizes is explained by a factor between units if it is within this factor of it, because movements differ in size.
 const NEAR: f64 = 3.0;
-/// Factors between units.
+/// Common factors between units.
 const FACTORS: [(f64, &str); 3] =
     [(1000.0, "millimetres among metres?"), (100.0, "centimetres among metres?"), (57.3, "degrees among radians?")];
 
-/// Says which episodes are so many times as large as the others that their unit is another one, it seems: sizes fall into two groups, of
-/// which the smaller is named.
+/// Reports episodes whose size differs from the others' so much that they seem to have another unit: sizes form two groups, and the finding
+/// names the smaller group.
 ///
-/// `scales`: the factor on each channel, (n).
+/// `scales`: the factor of each channel, (n).
 pub(crate) fn other_units(episodes: &[Episode], scales: &DVector<f64>) -> Option<Finding> {
     let each: Vec<f64> = episodes.iter().map(|episode| size(episode, scales)).collect();
     let mut sizes: Vec<f64> = each.iter().copied().filter(|&size| size > 0.0).collect();
@@ -47,7 +47,7 @@ pub(crate) fn other_units(episodes: &[Episode], scales: &DVector<f64>) -> Option
         return None;
     }
     let is_odd = |&(_, &size): &(&Episode, &f64)| size > 0.0 && (size >= large[0]) == larger;
-    // Of an episode that was split, pieces have its name.
+    // Pieces of a split episode have its name.
     let odd = episodes.iter().zip(&each).filter(is_odd);
     let mut odd: Vec<&str> = odd.map(|(of, _)| of.name.split(PIECE).next().unwrap_or("")).collect();
     odd.dedup();
@@ -77,7 +77,7 @@ pub(crate) fn other_units(episodes: &[Episode], scales: &DVector<f64>) -> Option
     })
 }
 
-/// How far the positions of an episode spread in the units of the recording, root mean square.
+/// Root mean square spread of an episode's positions, in the units of the recording.
 fn size(episode: &Episode, scales: &DVector<f64>) -> f64 {
     let spread = |(row, scale): (usize, &f64)| standard_deviation(episode.positions.row(row).iter().copied()) / scale;
     scales.iter().enumerate().map(|of| spread(of).powi(2)).sum::<f64>().sqrt()
@@ -91,7 +91,7 @@ mod tests {
 
     use super::*;
 
-    /// Movements towards the origin from starts at any distance from 0.2 to 2, times a factor each.
+    /// Movements towards the origin from starts at distances from 0.2 to 2, each multiplied by a factor.
     fn episodes(factors: &[f64], seed: f64) -> Vec<Episode> {
         let one = |(k, factor): (usize, &f64)| {
             let far = 1.1 + 0.9 * (seed + 1.9 * k as f64).sin();
@@ -117,8 +117,8 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(48))]
 
-        /// Movements of all sizes pass; a few in millimetres are named, whichever they are, and a few in another unit that are smaller from
-        /// three on.
+        /// Movements of all sizes are accepted. A few in millimetres are named, whichever they are; smaller ones in another unit only if
+        /// there are three or more.
         #[test]
         fn episodes_in_another_unit_are_named(
             seed in 0.0..6.0f64,
@@ -128,7 +128,7 @@ mod tests {
             prop_assert_eq!(found(&[1.0; 20], seed), None);
             let factors: Vec<f64> = (0..20).map(|k| if odd.contains(&k) { factor } else { 1.0 }).collect();
             let found = found(&factors, seed);
-            // Small movements in large units may look like large ones in small units.
+            // Small movements in large units may resemble large ones in small units.
             if let Some(Finding { what, next, .. }) = found {
                 let names: Vec<String> = odd.iter().map(|k| format!("take {k}")).collect();
                 let listed = format!("({})", names.join(", "));

@@ -1,4 +1,4 @@
-//! A direction in which the velocity is the same everywhere.
+//! Detects a direction in which the velocity is the same everywhere.
 
 use motion::{Demonstrations, Finding, Trajectory, Verdict};
 use nalgebra::{DMatrix, DVector};
@@ -7,18 +7,18 @@ use crate::StateChannel;
 use crate::direction::direction_by_channels;
 use crate::numbers::{percent, short};
 
-/// Velocities are means over a part of a movement, which noise leaves alone: a quarter, or so many samples if that is less.
+/// Velocities are averaged over parts of a movement to reduce noise: a quarter, or so many samples if that is less.
 const PARTS: usize = 4;
 const SAMPLES: usize = 50;
-/// Largest deviation of a steady velocity, as a share of its mean: a surface tilted by ten degrees reaches a fifth.
+/// Maximum deviation of a steady velocity, as a share of its mean; a surface tilted by ten degrees reaches a fifth.
 const STEADY: f64 = 0.5;
-/// Its largest variance, as a share of what the next direction varies by.
+/// Maximum variance of a steady velocity, as a share of the variance in the next direction.
 const UNLIKE_OTHERS: f64 = 0.15;
-/// A mean below this share of the speed is no movement, which coverage of directions shows.
+/// A mean below this share of the speed is no movement; the coverage of directions reports that case.
 const MOVES: f64 = 0.05;
 
-/// Says that a press, a conveyor or a clock hides the policy in some direction: there the velocity is the same in all movements, and not 0.
-/// `state` names the channels of the demonstrations, (n).
+/// Reports that a press, a conveyor or a clock hides the policy in some direction, in which the velocity is the same in all movements and
+/// not 0. `state` names the channels of the demonstrations, (n).
 pub fn pressing(demonstrations: &Demonstrations, state: &[StateChannel]) -> Option<Finding> {
     let steady = steady(demonstrations)?;
     let direction = direction_by_channels(steady.direction.as_slice(), state);
@@ -38,7 +38,7 @@ struct Steady {
     direction: DVector<f64>,
     mean: f64,
     deviation: f64,
-    /// |mean| over the root mean square of the speed.
+    /// |mean| divided by the root mean square of the speed.
     share: f64,
 }
 
@@ -63,7 +63,7 @@ fn steady(demonstrations: &Demonstrations) -> Option<Steady> {
     let next = (0..dim).filter(|&at| at != least).map(variance).fold(f64::INFINITY, f64::min);
     let direction = eigen.eigenvectors.column(least).into_owned();
     let mean = direction.dot(&mean);
-    // What rounding leaves is no deviation.
+    // A deviation caused by rounding counts as 0.
     let deviation = (variance(least).sqrt() / mean.abs() * 1e3).round() * mean.abs() / 1e3;
     let is_steady = deviation <= STEADY * mean.abs()
         && variance(least) <= UNLIKE_OTHERS * next

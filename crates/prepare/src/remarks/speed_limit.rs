@@ -1,4 +1,4 @@
-//! Speeds that stop at a limit.
+//! Detects speeds that are cut off at a limit.
 
 use motion::{Demonstrations, Finding, Verdict};
 
@@ -6,22 +6,22 @@ use crate::StateChannel;
 use crate::numbers::{percent, short};
 use crate::samples::noise::{Noise, of_velocities, velocity_variance};
 
-/// Speeds at a limit are equal to this share, where there is no noise: turning shortens steps.
+/// Relative tolerance for speeds at a limit without noise, because turning shortens steps.
 const EQUAL: f64 = 2e-3;
-/// Half the width of a plateau, in deviations of the noise.
+/// Half the width of a plateau, in standard deviations of the noise.
 const DEVIATIONS: f64 = 2.5;
 /// Noise above this share of the limit hides it.
 const LOUD: f64 = 0.1;
-/// Samples at the limit, as a share of all.
+/// Minimum share of samples at the limit.
 const SHARE: f64 = 0.05;
-/// Faster ones, which noise may cause.
+/// Maximum share of faster samples, which noise may cause.
 const FASTER: f64 = 0.01;
-/// So many times the samples of the next slower interval: peaks of equal movements are below 3.
+/// Minimum ratio to the number of samples in the next slower interval; peaks of equal movements are below 3.
 const CROWDED: f64 = 3.0;
-/// An axis with a mean velocity of this share of the plateau is pressed, not limited.
+/// An axis whose mean velocity is this share of the plateau is pressed, not limited.
 const STEADY: f64 = 0.9;
 
-/// Says at which speed the robot, or some of its axes, can go no faster.
+/// Reports the maximum speed of the robot, or of some of its axes.
 pub(super) fn speed_limit(demonstrations: &Demonstrations, state: &[StateChannel], noise: &Noise) -> Option<Finding> {
     let deviation = velocity_variance(demonstrations, noise).sqrt();
     if let Some(plateau) = plateau(of_velocities(demonstrations, |u| u.norm()), deviation) {
@@ -41,7 +41,7 @@ pub(super) fn speed_limit(demonstrations: &Demonstrations, state: &[StateChannel
 
 struct Plateau {
     speed: f64,
-    /// Of all samples.
+    /// Share of all samples.
     share: f64,
 }
 

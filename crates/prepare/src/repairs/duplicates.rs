@@ -3,7 +3,8 @@ use motion::{Episode, Verdict};
 
 use crate::notes::Notes;
 
-/// The same movement twice counts once: it would be left out to test the prediction of itself.
+/// Drops copies of movements, because a copy would remain in the training data when its original is left out to test
+/// the prediction.
 pub(crate) fn leave_out(episodes: &mut Vec<Episode>, notes: &mut Notes) {
     let firsts = duplicates(episodes.iter().map(|episode| &episode.positions));
     // The same path at another speed, towards another goal or under another constraint is another movement.

@@ -1,4 +1,4 @@
-//! Episodes that no learner can use, and the others as it takes them.
+//! Drops episodes that no learner can use, and converts the others.
 
 use std::{iter, mem};
 
@@ -9,10 +9,10 @@ use nalgebra::DVector;
 use crate::PrepareError;
 use crate::notes::Notes;
 
-/// Samples for each dimension below which hardly anything can be learnt.
+/// Minimum number of samples per dimension; fewer allow hardly any learning.
 const FEW: usize = 3;
 
-/// Every episode that is a movement, in scaled units.
+/// Converts every episode that is a movement, in scaled units.
 pub(crate) fn movements(
     mut movements: Vec<Episode>,
     scales: &DVector<f64>,
@@ -45,7 +45,7 @@ pub(crate) fn movements(
     Ok(movements)
 }
 
-/// Leaves out what never changes.
+/// Leaves out episodes that never change.
 pub(crate) fn leave_out_still(episodes: &mut Vec<Episode>, notes: &mut Notes) {
     episodes.retain(|episode| {
         let still = stands_still(&episode.positions);
@@ -56,7 +56,7 @@ pub(crate) fn leave_out_still(episodes: &mut Vec<Episode>, notes: &mut Notes) {
     });
 }
 
-/// All of them, checked.
+/// Converts and checks all episodes.
 pub(crate) fn demonstrations(episodes: Vec<Episode>) -> Result<Demonstrations, PrepareError> {
     let of = |episode: String| |source| PrepareError::Episode { episode, source };
     let first = episodes[0].name.clone();
@@ -67,7 +67,7 @@ pub(crate) fn demonstrations(episodes: Vec<Episode>) -> Result<Demonstrations, P
     Demonstrations::new(episodes.into_iter().map(trajectory).collect::<Result<_, _>>()?).map_err(of(first))
 }
 
-/// What `of` finds of them as demonstrations. Their numbers are lent to it, not copied.
+/// Applies `of` to the episodes as demonstrations. Their numbers are moved there and back, not copied.
 pub(crate) fn lent<T>(episodes: &mut [Episode], of: impl FnOnce(&Demonstrations) -> T) -> Result<T, PrepareError> {
     let lent = |episode: &mut Episode| Episode {
         name: episode.name.clone(),

@@ -5,12 +5,13 @@ use crate::notes::{Notes, PIECE};
 use crate::numbers::short;
 use crate::remarks::is_switch;
 
-/// Shorter pieces than this are not worth learning from.
+/// Minimum length of a useful piece.
 const LEAST: usize = 4;
-/// More episodes than this share with jumps are no accidents.
+/// If more than this share of the episodes jump, the jumps are no accidents.
 const MANY: f64 = 0.2;
 
-/// Cuts episodes where a single step stands out from all about it: samples are missing there, or one is wrong.
+/// Cuts episodes where a single step stands out from its surroundings, because samples are missing there, or one is
+/// wrong.
 pub(crate) fn cut(episodes: &mut Vec<Episode>, channels: &[Channel], notes: &mut Notes) {
     let (count, mut cut, mut first) = (episodes.len(), 0, None);
     let switches: Vec<usize> = (0..channels.len()).filter(|&axis| is_switch(episodes, axis)).collect();
@@ -40,7 +41,7 @@ pub(crate) fn cut(episodes: &mut Vec<Episode>, channels: &[Channel], notes: &mut
     );
 }
 
-/// A jump in words, and the channel that jumps most.
+/// Description of a jump, and the channel with the largest one.
 fn described(episode: &Episode, jump: &LongStep, channels: &[Channel]) -> (String, usize) {
     let step = episode.step(jump.sample);
     let most = step.icamax();

@@ -1,14 +1,15 @@
-//! Labels that change within an episode: whether they can tell where constraints switch.
+//! Decides whether labels that change within an episode can mark the switches of constraints.
 
 use motion::{Episode, Verdict};
 
 use crate::notes::Notes;
 use crate::numbers::counted;
 
-/// Samples beyond the dimension of the state that tell a constraint.
+/// Number of samples beyond the dimension of the state that determine a constraint.
 const SPARE: usize = 4;
 
-/// Retains labels if most samples lie where one label holds for long enough to tell a constraint on a state of so many dimensions.
+/// Keeps labels if most samples are in sections where one label lasts long enough to determine a constraint on a state of this
+/// dimension.
 pub(crate) fn decide(episodes: &mut [Episode], dim: usize, notes: &mut Notes) {
     let with = episodes.iter().filter(|episode| switches(episode) > 0).count();
     if with == 0 {
@@ -36,7 +37,7 @@ fn switches(episode: &Episode) -> usize {
     episode.constraint.as_ref().map_or(0, motion::Labels::switches)
 }
 
-/// For how many samples each label holds.
+/// Duration of each label in samples.
 fn lengths(episodes: &[Episode]) -> Vec<usize> {
     let labelled = episodes.iter().filter_map(|episode| Some((episode.constraint.as_ref()?, episode.n_samples())));
     labelled.flat_map(|(labels, samples)| labels.lengths(samples)).collect()

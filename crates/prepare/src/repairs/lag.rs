@@ -1,23 +1,24 @@
-//! Velocities that were recorded later, or earlier, than the positions.
+//! Detects velocities that were recorded later, or earlier, than the positions.
 
 use motion::{Episode, Verdict, upper_median};
 
 use crate::notes::Notes;
 use crate::numbers::{percent, short};
 
-/// Steps compared, at most, evenly spaced.
+/// Maximum number of steps to compare, evenly spaced.
 const STEPS: usize = 20_000;
-/// Longest lag, in samples and as a share of a movement.
+/// Maximum lag, in samples and as a share of a movement.
 const SAMPLES: usize = 20;
 const SHARE: usize = 4;
-/// Rules of integration put a velocity up to half a sample beside the middle of its step; this many half samples are a lag.
+/// Integration rules place a velocity up to half a sample from the middle of its step; this number of half samples is a
+/// lag.
 const LEAST: isize = 3;
-/// What the shifted velocities leave of the steps, as a share of what they leave as recorded.
+/// Maximum mismatch of the shifted velocities with the steps, as a share of the mismatch as recorded.
 const BETTER: f64 = 0.3;
 /// Share of the squared velocities that a lag may change before the policy is in doubt.
 const HARMLESS: f64 = 0.15;
 
-/// Says by how much velocities should be shifted to agree with the steps.
+/// Reports the shift that makes velocities agree with the steps.
 pub(crate) fn remark(episodes: &[Episode], notes: &mut Notes) {
     let Some(lag) = lag(episodes) else { return };
     let (when, next) = if lag.seconds > 0.0 {
@@ -40,13 +41,13 @@ pub(crate) fn remark(episodes: &[Episode], notes: &mut Notes) {
 }
 
 struct Lag {
-    /// Positive: velocities are late.
+    /// Positive if velocities are late.
     seconds: f64,
-    /// Σ|difference|²/Σ|step|² that the shift removes.
+    /// The part of Σ|difference|²/Σ|step|² that the shift removes.
     changed: f64,
 }
 
-/// The shift with which velocities explain the steps best, if it matters.
+/// The shift at which velocities explain the steps best, if it matters.
 fn lag(episodes: &[Episode]) -> Option<Lag> {
     let mut lengths: Vec<usize> = episodes.iter().map(Episode::n_samples).collect();
     lengths.sort_unstable();
@@ -63,7 +64,7 @@ fn lag(episodes: &[Episode]) -> Option<Lag> {
     let mismatches =
         |shift| compared.iter().map(|(episode, step)| mismatch(episode, *step, shift)).collect::<Option<Vec<f64>>>();
     let lefts = (-halves..=halves).map(|shift| Some((shift, mismatches(shift)?))).collect::<Option<Vec<_>>>()?;
-    // Medians: where a constraint gives way, a few steps lie between two velocities.
+    // Uses medians, because where a constraint ends, a few steps lie between two velocities.
     let usual = |mismatches: &[f64]| upper_median(mismatches.to_vec()).unwrap_or(0.0);
     let (best, shifted) = lefts.iter().min_by(|a, b| usual(&a.1).total_cmp(&usual(&b.1)))?;
     let near = lefts.iter().filter(|(shift, _)| shift.abs() <= 1);
@@ -75,15 +76,15 @@ fn lag(episodes: &[Episode]) -> Option<Lag> {
     is_lag.then(|| Lag { seconds: *best as f64 / 2.0 * step, changed: (recorded - least) / power })
 }
 
-/// The step's velocity.
+/// Mean velocity of a step.
 fn rate(episode: &Episode, step: usize) -> nalgebra::DVector<f64> {
     episode.step(step) / episode.times.seconds(step, step + 1)
 }
 
-/// Squared difference between a step's velocity and that recorded so many half samples after its middle.
+/// Squared difference between a step's velocity and the one recorded `half_samples` after its middle.
 fn mismatch(episode: &Episode, step: usize, half_samples: isize) -> Option<f64> {
     let velocities = episode.velocities.as_ref()?;
-    // The middle of the step is half a sample after its first.
+    // The middle of the step is half a sample after its first sample.
     let at = (2 * step + 1).saturating_add_signed(half_samples);
     let (before, after) = (at / 2, at.div_ceil(2));
     let recorded = (velocities.column(before) + velocities.column(after)) * 0.5;

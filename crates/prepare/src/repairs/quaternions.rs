@@ -1,4 +1,4 @@
-//! Orientations as unit quaternions, of which q and −q are one.
+//! Orientations as unit quaternions; q and −q are the same orientation.
 
 use motion::{Channel, Episode, Verdict};
 
@@ -6,12 +6,12 @@ use crate::notes::Notes;
 use crate::numbers::counted;
 use crate::options::Repair;
 
-/// Norms of unit quaternions are this near to 1.
+/// Tolerance for the norm of a unit quaternion.
 const UNIT: f64 = 1e-3;
-/// A step over this length is a change of sign: opposite quaternions are 2 apart.
+/// A step longer than this is a change of sign; opposite quaternions are 2 apart.
 const FLIP: f64 = 1.0;
 
-/// Names the channels that are unit quaternions, and gives those of one orientation one sign.
+/// Reports channels that are unit quaternions, and gives each orientation a consistent sign.
 pub(crate) fn align(episodes: &mut [Episode], channels: &[Channel], repair: Repair, notes: &mut Notes) {
     let mut first = 0;
     while first + 4 <= channels.len() {
@@ -52,7 +52,7 @@ fn is_quaternion(episodes: &[Episode], first: usize) -> bool {
     moves && columns.all(|x| (x.rows(first, 4).norm() - 1.0).abs() <= UNIT)
 }
 
-/// Number of samples after which the sign changed, within a movement and from one to the next.
+/// Makes signs consistent; returns the number of sign changes, within movements and between them.
 fn same_signs(episodes: &mut [Episode], first: usize) -> usize {
     let reference = episodes[0].positions.fixed_view::<4, 1>(first, 0).into_owned();
     let mut flips = 0;
@@ -76,7 +76,7 @@ fn same_signs(episodes: &mut [Episode], first: usize) -> usize {
     flips
 }
 
-/// Velocities that were made of the positions jump with them: those are made anew.
+/// Recomputes velocities that were computed from the positions, because they jump with them.
 fn make_of_positions(episode: &mut Episode, first: usize) {
     let Some(velocities) = &mut episode.velocities else { return };
     for i in 1..episode.positions.ncols() {

@@ -5,14 +5,14 @@ use crate::notes::{Notes, and_more};
 use crate::numbers::{percent, short};
 use crate::options::PrepareOptions;
 
-/// Stamps that differ by less than this share of a step are even.
+/// Stamps are even if they differ by less than this share of a step.
 const EVEN: f64 = 0.01;
-/// Longer steps than this are hardly seconds.
+/// Steps longer than this are hardly in seconds.
 pub(crate) const SLOW: f64 = 5.0;
-/// A step over so many usual ones is a gap.
+/// A step longer than this multiple of the usual one is a gap.
 const GAP: f64 = 3.0;
 
-/// The time step of every movement, or its stamps where they are uneven.
+/// Determines the time step of every movement, or keeps its stamps if they are uneven.
 pub(crate) fn decide(
     episodes: &mut [Episode],
     options: &PrepareOptions,
@@ -39,7 +39,7 @@ pub(crate) fn decide(
             uneven += 1;
             worst = worst.max(jitter);
         } else {
-            // The mean forgets how stamps were rounded.
+            // The mean averages out the rounding of stamps.
             let mean = steps.iter().sum::<f64>() / steps.len().max(1) as f64;
             episode.times = Times::Even { step: whole_step(mean), len: episode.n_samples() };
         }
@@ -59,7 +59,7 @@ pub(crate) fn decide(
     Ok(())
 }
 
-/// The median of the episodes' steps, in seconds; none if no episode has two samples.
+/// The median of the episodes' steps, in seconds; `None` if no episode has two samples.
 pub(crate) fn usual_step(episodes: &[Episode]) -> Option<f64> {
     upper_median(episodes.iter().filter_map(|episode| episode.times.median_step()).collect())
 }
@@ -79,7 +79,7 @@ fn decided(episodes: &[Episode], (uneven, worst): (usize, f64), notes: &mut Note
     notes.decided("time step", value, why, "--dt");
 }
 
-/// A time step that is hardly one in seconds.
+/// Reports a time step that is hardly in seconds.
 pub(crate) fn doubt(demonstrations: &Demonstrations, notes: &mut Notes) {
     let usual = demonstrations.time_step();
     if usual <= SLOW {

@@ -10,24 +10,24 @@ use crate::samples::noise::Noise;
 
 use crate::repairs::stamps::{SLOW, usual_step};
 
-/// Velocities agree with the steps up to this factor.
+/// Velocities agree with the steps if they differ by at most this factor.
 const AGREE: f64 = 1.25;
-/// Below this share of the steps' squares explained, velocities have nothing to do with them.
+/// Velocities are unrelated to the steps if they explain less than this share of the steps' squares.
 const UNRELATED: f64 = 0.5;
-/// A factor is one that mistakes have if it is as near as this.
+/// A factor is attributed to a common mistake if it is within this tolerance.
 const NEAR: f64 = 0.1;
-/// Largest residual of the velocities, in multiples of the noise.
+/// Maximum residual of the velocities, in multiples of the noise.
 const NOISE: f64 = 1.5;
-/// Share of all squared steps below which a channel hardly moves.
+/// A channel hardly moves if its squared steps are below this share of all.
 const STILL: f64 = 1e-6;
-/// Share of all squared steps by velocities up to which those of a channel that hardly moves may be noise.
+/// The velocities of a channel that hardly moves may be noise up to this share of all squared steps by velocities.
 const NOISE_OF_STILL: f64 = 0.04;
-/// Parts of a movement that are compared.
+/// Number of parts of a movement that are compared.
 const PARTS: usize = 4;
-/// Velocities that are differences of positions up to this share are made of them.
+/// Velocities were computed from positions if they differ from differences of these by at most this share.
 const SAME: f64 = 1e-6;
 
-/// Compares velocities with the steps; brings them to the steps' units, or drops them.
+/// Compares velocities with the steps; converts them to the steps' units, or drops them.
 pub(crate) fn decide(
     episodes: &mut [Episode],
     options: &PrepareOptions,
@@ -91,10 +91,11 @@ pub(crate) fn decide(
     Agreement::Own
 }
 
-/// A part of a movement: its step D, and S = Σ u δt, the step by its velocities; both (n).
+/// A part of a movement: its step D, and S = Σ u δt, the step computed from its velocities; both (n).
 type Part = (DVector<f64>, DVector<f64>);
 
-/// Steps as multiples of those by velocities, over parts of movements: Σ D S / Σ S² in each channel, S = Σ u δt.
+/// Factors between steps and steps computed from velocities, over parts of movements: Σ D S / Σ S² in each channel, S = Σ
+/// u δt.
 struct Steps {
     /// (n).
     factors: DVector<f64>,
@@ -115,7 +116,7 @@ impl Steps {
             let (own, own_moved) = (sum(&|(_, s)| s[axis].powi(2)), sum(&|(d, _)| d[axis].powi(2)));
             let still = own_moved <= STILL * moved + NOISE * 2.0 * variance(axis) * pairs.len() as f64;
             match own / power {
-                // What hardly moves does not determine a factor: its velocities may be noise.
+                // A channel that hardly moves does not determine a factor, because its velocities may be noise.
                 share if share <= STILL || still && share <= NOISE_OF_STILL => common,
                 _ if still => 0.0,
                 _ => sum(&|(d, s)| d[axis] * s[axis]) / own,
@@ -123,14 +124,14 @@ impl Steps {
         };
         let factors = DVector::from_fn(dim, |axis, _| factor(axis));
         let left = sum(&|(d, s)| (d - s.component_mul(&factors)).norm_squared());
-        // Both ends of a part carry the positions' noise.
+        // Both ends of a part contain the positions' noise.
         let noise = 2.0 * (0..dim).map(variance).sum::<f64>() * pairs.len() as f64;
         let explained = if left <= NOISE * noise { 1.0 } else { 1.0 - (left - noise) / (moved - noise) };
         Steps { factors, explained: if explained.is_finite() { explained } else { 0.0 } }
     }
 }
 
-/// Displacements of parts of a movement, and those that velocities give.
+/// Displacements of parts of a movement, and those computed from velocities.
 fn parts(episode: &Episode) -> Vec<Part> {
     let steps = episode.n_samples() - 1;
     let parts = PARTS.min((steps / 2).max(1));
@@ -148,7 +149,8 @@ fn parts(episode: &Episode) -> Vec<Part> {
         .collect()
 }
 
-/// What velocities are that are made of the positions: each the step after it, or the step before it or the mean of both.
+/// The kind of velocities that were computed from positions: each the step after it, or the step before it or the mean of
+/// both.
 fn made_of_positions(episodes: &[Episode]) -> Option<Agreement> {
     let off = |of: &dyn Fn(&Episode, usize) -> DVector<f64>| {
         let (mut left, mut power) = (0.0, 0.0);
@@ -181,7 +183,7 @@ fn rescale(episodes: &mut [Episode], fit: &Steps, channels: &[Channel], notes: &
             episode.times = episode.times.divided_by(1000.0);
         }
         let what = format!("stamps are {step:.0} apart and velocities 1000 times the steps");
-        // Of two time steps only the one that holds.
+        // Keeps only the valid one of two decisions on the time step.
         notes.decisions.retain(|decision| decision.what != "time step");
         notes.decided("time step", format!("{} s", step / 1000.0), format!("{what}: stamps are milliseconds"), "--dt");
         notes.found(Verdict::Doubtful, format!("{what}: stamps were read as milliseconds"), "--time-unit ms, or --dt");
@@ -218,12 +220,13 @@ fn rescale(episodes: &mut [Episode], fit: &Steps, channels: &[Channel], notes: &
     notes.found(Verdict::Doubtful, format!("{what}; they were converted to the units of positions and stamps"), next);
 }
 
-/// How far a factor is from 1, up or down; a change of sign most of all.
+/// Deviation of a factor from 1, in either direction; a change of sign deviates most.
 fn off(factor: f64) -> f64 {
     if factor < 0.0 { f64::INFINITY } else { factor.ln().abs() }
 }
 
-/// The factor of a usual mistake that is near `times`, since rules of integration differ by some percent, and the advice.
+/// The factor of a common mistake that is near `times`, with some per cent of tolerance for integration rules, and the
+/// advice.
 fn mistake(times: f64, step: f64) -> Option<(f64, &'static str)> {
     let degrees = "degrees and radians mixed? Use one of them (--degrees)";
     let mistakes = [

@@ -6,12 +6,12 @@ use crate::notes::{Notes, and_more};
 use crate::numbers::short;
 use crate::scale::range;
 
-/// A step over this share of a turn is a wrap.
+/// A step longer than this share of a turn is a wrap.
 const WRAP: f64 = 0.75;
-/// Angles that wrap come this near to the end of their range, and hardly beyond.
+/// Angles that wrap come this close to the end of their range, and hardly exceed it.
 const RANGE: std::ops::RangeInclusive<f64> = 0.9..=1.02;
 
-/// Angles that jump by a whole turn go on instead; every movement ends within half a turn of where all end.
+/// Unwraps angles that jump by a whole turn. Every movement then ends within half a turn of the common end.
 pub(crate) fn unwrap(episodes: &mut [Episode], channels: &[Channel], notes: &mut Notes) {
     for (channel, described) in channels.iter().enumerate() {
         let Some(turn) = turn(episodes, channel) else { continue };
@@ -41,7 +41,7 @@ pub(crate) fn unwrap(episodes: &mut [Episode], channels: &[Channel], notes: &mut
     }
 }
 
-/// A whole turn in the units of a channel whose values fill one, in radians or degrees.
+/// A whole turn in the units of a channel whose values cover one, in radians or degrees.
 fn turn(episodes: &[Episode], channel: usize) -> Option<f64> {
     let (low, high) = range(episodes.iter().flat_map(|episode| episode.positions.column_iter().map(|x| x[channel])));
     let fills = |turn: f64| {
@@ -52,7 +52,7 @@ fn turn(episodes: &[Episode], channel: usize) -> Option<f64> {
     [TAU, 360.0].into_iter().find(|&turn| fills(turn))
 }
 
-/// The first sample that is a whole turn from the one before, and the size of the step.
+/// The first sample that is a whole turn from the previous one, and the size of the step.
 fn wrap(episode: &Episode, channel: usize, turn: f64) -> Option<(usize, f64)> {
     let step = |i: usize| (episode.positions[(channel, i)] - episode.positions[(channel, i - 1)]).abs();
     let at = (1..episode.n_samples()).find(|&i| step(i) > WRAP * turn)?;
@@ -67,7 +67,7 @@ fn go_on(episode: &mut Episode, channel: usize, turn: f64) {
         if (now - before).abs() > WRAP * turn {
             turns -= ((now - before) / turn).round();
             if let Some(velocities) = &mut episode.velocities {
-                // Velocities that were made of the positions jump with them.
+                // Velocities that were computed from the positions jump with them.
                 let seconds = episode.times.seconds(i - 1, i);
                 for sample in [i - 1, i] {
                     let velocity = &mut velocities[(channel, sample)];

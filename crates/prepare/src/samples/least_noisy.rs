@@ -1,22 +1,22 @@
-//! Velocities with less noise than the recorded ones have, where positions have them.
+//! Velocities from positions, if these give less noise than the recorded velocities have.
 
 use motion::{Demonstrations, MotionError, Trajectory};
 use nalgebra::{DMatrix, DMatrixView, DVector};
 use smoothing::slopes_between_switches;
 
-/// Samples whose polynomial has the slope that is taken for a velocity.
+/// Number of samples of the polynomial whose slope serves as velocity.
 const POINTS: usize = 5;
-/// Share of the samples whose slopes are as good as is said of all.
+/// Share of the samples whose slopes meet the error estimate.
 const GOOD: f64 = 0.9;
-/// A slope's error, squared, is less than this share of the squared fourth difference of the steps around it: by noise of positions
-/// 0.69 of 70 step variances, by curvature 1/900.
+/// A slope's squared error is less than this share of the squared fourth difference of the steps around it: noise of positions
+/// contributes 0.69 of 70 step variances, curvature 1/900.
 const OFF: f64 = 0.01;
 
-/// The movements with velocities from positions and the noise of these, a variance an axis; none where it is not below `variance`,
-/// that of the recorded velocities.
+/// The movements with velocities from positions, and the noise variance of these per axis; `None` unless it is below `variance`, that
+/// of the recorded velocities.
 ///
 /// # Errors
-/// Where velocities overflow.
+/// If velocities overflow.
 pub fn with_less_noise(
     demonstrations: &Demonstrations,
     variance: f64,
@@ -27,8 +27,8 @@ pub fn with_less_noise(
     let most = squares.get((GOOD * squares.len() as f64) as usize);
     let of_slopes = most.map(|most| OFF * most / demonstrations.dim() as f64);
     let Some(of_slopes) = of_slopes.filter(|of_slopes| *of_slopes < variance) else { return Ok(None) };
-    // What recorded velocities agree with at most samples: a simulator that takes Euler steps moves along them, all else along slopes.
-    // Where a constraint switches both may be far off, so that samples count, not squares.
+    // Takes what recorded velocities agree with at most samples: steps for a simulator that takes Euler steps, slopes for everything
+    // else. Near a switch of the constraint both may be far off, so samples are counted instead of summing squares.
     let slopes = |movement: &Trajectory| slopes_between_switches(movement, POINTS);
     let nearer = |movement: &Trajectory| -> Vec<bool> {
         let Some(recorded) = movement.velocities() else { return Vec::new() };
@@ -52,7 +52,7 @@ fn squared_fourth_differences(movement: &Trajectory) -> Vec<f64> {
     (0..(steps.ncols() + 1).saturating_sub(POINTS)).map(|at| fourth(steps.columns(at, POINTS))).collect()
 }
 
-/// At every sample the step that begins there, over its time, and at the last one the step that ends there, (n, N).
+/// At each sample, the step that begins there, divided by its duration; at the last sample, the step that ends there, (n, N).
 fn steps(movement: &Trajectory) -> DMatrix<f64> {
     let steps = movement.step_velocities();
     let last = steps.ncols();

@@ -1,4 +1,4 @@
-//! The noise of samples, and what is done about it.
+//! The noise of samples, and its treatment.
 
 pub(crate) mod least_noisy;
 pub(crate) mod noise;

@@ -10,40 +10,41 @@ use crate::notes::Notes;
 use crate::numbers::percent_of_all;
 use crate::repairs::agreement::Agreement;
 
-/// Positions count as exact if noise makes less than this share of the squared steps.
+/// Positions count as exact if noise is less than this share of the squared steps.
 const EXACT: f64 = 0.01;
-/// Above this share the user should know.
+/// Above this share noise is reported.
 const NOISY: f64 = 0.1;
-/// Up to this share of their squares, noise of velocities does not keep them from correcting positions.
+/// Up to this share of their squares, noise of velocities does not prevent them from correcting positions.
 const CORRECTING: f64 = 1e-3;
-/// Velocities this noisy are worth less than positions.
+/// Velocities with more noise than this are worth less than positions.
 const USELESS_VELOCITIES: f64 = 0.2;
 
-/// Steps are multiples of another if they are so to this part of it.
+/// Tolerance for a step to be a multiple of another, as a share of the latter.
 const WHOLE: f64 = 0.01;
-/// Digits are few if a value occurs so often on average.
+/// Values have few digits if each occurs this often on average.
 const REPEATED: usize = 4;
 
 /// Noise of recordings, estimated from third differences.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Noise {
-    /// Standard deviation of the noise in each channel, (n), in scaled units; none with too few samples for an estimate.
+    /// Standard deviation of the noise in each channel, (n), in scaled units; `None` if there are too few samples for an
+    /// estimate.
     pub positions: Option<Vec<f64>>,
-    /// Share of the squared steps that is noise; 0 where it cannot be estimated.
+    /// Share of noise in the squared steps; 0 if it cannot be estimated.
     pub step_share: f64,
-    /// Share of the squared recorded velocities that is noise; none where there are none or it cannot be estimated.
+    /// Share of noise in the squared recorded velocities; `None` if there are none or it cannot be estimated.
     pub velocity_share: Option<f64>,
 }
 
 impl Noise {
-    /// Whether recorded velocities are exact enough to correct positions, or to need no smooth ones.
+    /// Whether recorded velocities are exact enough to correct positions, or to make smoothing unnecessary.
     pub fn velocities_correct_positions(&self) -> bool {
         self.velocity_share.is_none_or(|share| share <= CORRECTING)
     }
 }
 
-/// Of positions, and of velocities where they were recorded.
+/// Noise of positions, and of velocities if they were recorded.
 pub(crate) fn of(demonstrations: &Demonstrations) -> Noise {
     let positions = PositionNoise::of(demonstrations).ok().map(|noise| with_resolution(demonstrations, noise));
     let velocity_share = VelocityNoise::of(demonstrations).map(|noise| noise.share);
@@ -54,8 +55,8 @@ pub(crate) fn of(demonstrations: &Demonstrations) -> Noise {
     }
 }
 
-/// Positions with few digits are no better than those: a step q of the last digit is noise of deviation q/√12, which
-/// differences do not see while the digits stand still.
+/// Lower limit on noise for positions with few digits: a step q of the last digit is noise with the standard deviation
+/// q/√12, which differences do not show while the digits are constant.
 fn with_resolution(demonstrations: &Demonstrations, noise: PositionNoise) -> PositionNoise {
     let least = DVector::from_fn(demonstrations.dim(), |axis, _| {
         resolution(demonstrations, axis).unwrap_or(0.0) / 12f64.sqrt()
@@ -70,7 +71,7 @@ fn with_resolution(demonstrations: &Demonstrations, noise: PositionNoise) -> Pos
     PositionNoise { deviations, step_share: step_share.min(1.0) }
 }
 
-/// Sum of the squared steps, and how many there are.
+/// Sum of the squared steps, and their number.
 pub(crate) fn squared_steps(demonstrations: &Demonstrations) -> (f64, usize) {
     let steps = demonstrations.trajectories().iter().map(|movement| {
         let (x, steps) = (movement.states(), movement.n_samples() - 1);
@@ -79,7 +80,7 @@ pub(crate) fn squared_steps(demonstrations: &Demonstrations) -> (f64, usize) {
     steps.fold((0.0, 0), |(sum, count), (square, steps)| (sum + square, count + steps))
 }
 
-/// The step of which all differences between a channel's values are multiples, if there are few values.
+/// The step of which all differences between a channel's values are multiples, if there are few distinct values.
 pub(crate) fn resolution(demonstrations: &Demonstrations, axis: usize) -> Option<f64> {
     let mut values: Vec<f64> = demonstrations.values(axis).collect();
     let all = values.len();
@@ -91,7 +92,7 @@ pub(crate) fn resolution(demonstrations: &Demonstrations, axis: usize) -> Option
     (few && values.windows(2).all(|pair| whole(pair[1] - pair[0]))).then_some(least)
 }
 
-/// Shows `see` recorded velocities, or those of the steps where there are none, (n) each.
+/// Calls `see` with the recorded velocities, or, without them, with those of the steps, (n) each.
 pub(crate) fn each_velocity(demonstrations: &Demonstrations, mut see: impl FnMut(DVectorView<'_, f64>)) {
     for movement in demonstrations.trajectories() {
         let steps = || Cow::Owned(movement.step_velocities());
@@ -100,14 +101,14 @@ pub(crate) fn each_velocity(demonstrations: &Demonstrations, mut see: impl FnMut
     }
 }
 
-/// What `of` finds of each of these velocities, (M).
+/// Applies `of` to each of these velocities, (M).
 pub(crate) fn of_velocities(demonstrations: &Demonstrations, of: impl Fn(DVectorView<'_, f64>) -> f64) -> Vec<f64> {
     let mut found = Vec::with_capacity(demonstrations.n_samples());
     each_velocity(demonstrations, |velocity| found.push(of(velocity)));
     found
 }
 
-/// Variance of the noise in each axis of [`each_velocity`], the mean of all axes; 0 where it cannot be estimated.
+/// Variance of the noise of [`each_velocity`] per axis, averaged over axes; 0 if it cannot be estimated.
 pub(crate) fn velocity_variance(demonstrations: &Demonstrations, noise: &Noise) -> f64 {
     let dim = demonstrations.dim() as f64;
     let positions = noise.positions.iter().flatten().map(|deviation| deviation.powi(2)).sum::<f64>() / dim;
@@ -115,7 +116,7 @@ pub(crate) fn velocity_variance(demonstrations: &Demonstrations, noise: &Noise) 
         .map_or(2.0 * positions / demonstrations.time_step().powi(2), |noise| noise.variance / dim)
 }
 
-/// The kind of recording where the user requested a smoothing.
+/// The source of velocities if the user requested smoothing.
 pub(crate) fn as_requested(demonstrations: &Demonstrations, agreement: Agreement) -> VelocitySource {
     if matches!(agreement, Agreement::None | Agreement::Differences) {
         return VelocitySource::PositionsAsRequested;
@@ -123,7 +124,7 @@ pub(crate) fn as_requested(demonstrations: &Demonstrations, agreement: Agreement
     if agreement == Agreement::Own { of_recorded(demonstrations) } else { VelocitySource::Recorded }
 }
 
-/// Recorded velocities, with their noise if that is more than negligible.
+/// Recorded velocities, with their noise if it is not negligible.
 pub(crate) fn of_recorded(demonstrations: &Demonstrations) -> VelocitySource {
     match VelocityNoise::of(demonstrations).filter(|noise| !noise.is_negligible()) {
         Some(noise) => VelocitySource::Noisy(noise.variance / demonstrations.dim() as f64),
@@ -131,7 +132,7 @@ pub(crate) fn of_recorded(demonstrations: &Demonstrations) -> VelocitySource {
     }
 }
 
-/// The kind of recording for the learners.
+/// Decides on the source of velocities for the learners.
 pub(crate) fn decide(
     demonstrations: &Demonstrations,
     noise: &Noise,

@@ -1,4 +1,4 @@
-//! Smoothing of positions as requested by the user.
+//! Smoothing of positions on request.
 
 use motion::{Demonstrations, MotionError, Trajectory};
 use smoothing::{SavitzkyGolay, SmoothingError, slopes};
@@ -7,12 +7,12 @@ use crate::PrepareError;
 use crate::notes::Notes;
 use crate::options::Smoothing;
 
-/// Fewer samples in a window than this smooth nothing: a parabola goes through three.
+/// Minimum number of samples in a window: a parabola passes exactly through three.
 const LEAST: usize = 5;
-/// Samples that a parabola goes through.
+/// Number of samples through which a parabola passes.
 const PARABOLA: usize = 3;
 
-/// The movements as requested; none if nothing was.
+/// The movements with the requested smoothing; `None` if none was requested.
 pub(crate) fn as_requested(
     demonstrations: &Demonstrations,
     smoothing: Smoothing,
@@ -49,14 +49,14 @@ pub(crate) fn as_requested(
 }
 
 fn nearest_odd(samples: f64) -> usize {
-    // Not a number becomes 1; what is too large becomes the largest.
+    // Not a number becomes 1; a number that is too large becomes the largest.
     (((samples - 1.0) / 2.0).round().max(0.0) as usize).saturating_mul(2).saturating_add(1)
 }
 
-/// The same movements; velocities are slopes of the parabola through a sample and its neighbours.
+/// The same movements with velocities that are slopes of the parabola through a sample and its neighbours.
 ///
 /// # Errors
-/// Where slopes overflow.
+/// If slopes overflow.
 pub fn with_slopes(demonstrations: &Demonstrations) -> Result<Demonstrations, MotionError> {
     let with = |movement: &Trajectory| movement.clone().with_velocities(slopes(movement, PARABOLA));
     Demonstrations::new(demonstrations.trajectories().iter().map(with).collect::<Result<_, _>>()?)

@@ -7,24 +7,24 @@ use crate::notes::{Notes, and_more};
 use crate::samples::noise;
 use crate::scale::range;
 
-/// At rest for fewer samples than this is no stand-still.
+/// Minimum number of samples at rest to report.
 const STILL: usize = 10;
-/// Noise of more than this share of a channel's spread is as large as the movement itself.
+/// Noise above this share of a channel's spread is as large as the movement itself.
 const LOUD: f64 = 0.1;
-/// With more noise than this share of a channel's spread, slow and still look alike.
+/// With noise above this share of a channel's spread, slow motion and rest cannot be distinguished.
 const QUIET: f64 = 0.0025;
-/// What changes by less than this share of its spread is at rest.
+/// A channel is at rest if it changes by less than this share of its spread.
 const REST: f64 = 1e-6;
 
-/// How far from the first or last sample each channel is at rest, (n).
+/// Maximum distance of each channel from the first or last sample at rest, (n).
 struct Rest {
     bounds: Vec<f64>,
-    /// Whether noise is small enough to tell rest from slow motion.
+    /// Whether noise is small enough to distinguish rest from slow motion.
     quiet: bool,
 }
 
 impl Rest {
-    /// `noise`: standard deviation of every channel, (n), where it is known.
+    /// `noise`: standard deviation of each channel, (n), if known.
     fn of(demonstrations: &Demonstrations, noise: Option<&[f64]>) -> Rest {
         let spread = |axis: usize| {
             let (low, high) = range(demonstrations.values(axis));
@@ -37,7 +37,7 @@ impl Rest {
         Rest { bounds: spreads.iter().enumerate().map(bound).collect(), quiet }
     }
 
-    /// Samples at rest at the start and at the end of a movement (n, N).
+    /// Numbers of samples at rest at the start and at the end of a movement (n, N).
     fn ends(&self, states: &DMatrix<f64>) -> (usize, usize) {
         let count = |samples: &mut dyn Iterator<Item = usize>| {
             let Some(end) = samples.next() else { return 0 };
@@ -78,7 +78,7 @@ pub fn trim_still(recordings: &mut Recordings) {
     }
 }
 
-/// Says where episodes stand still at an end.
+/// Reports episodes that stand still at an end.
 pub(crate) fn remark(
     demonstrations: &Demonstrations,
     noise: Option<&[f64]>,

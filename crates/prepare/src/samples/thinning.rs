@@ -7,14 +7,14 @@ use crate::notes::Notes;
 use crate::numbers::percent_of_all;
 use crate::samples::noise::{Noise, squared_steps};
 
-/// Samples are averaged until noise makes at most this share of the squared steps.
+/// Samples are averaged until noise is at most this share of the squared steps.
 const CALM: f64 = 0.3;
-/// Movements retain at least so many samples.
+/// Minimum number of samples that movements retain.
 const LEAST: usize = 40;
 
-/// How many samples in a row become one: 1 leaves all as they are.
+/// Number of successive samples that are averaged to one; 1 leaves all unchanged.
 ///
-/// The mean of k samples has a k-th of their noise's variance, and steps between such means are k times as long.
+/// The mean of k samples has a k-th of their noise variance, and steps between such means are k times as long.
 pub(crate) fn decide(demonstrations: &Demonstrations, noise: &Noise, notes: &mut Notes) -> usize {
     let Some(deviations) = &noise.positions else { return 1 };
     let variance: f64 = deviations.iter().map(|sd| sd * sd).sum();
@@ -39,10 +39,11 @@ pub(crate) fn decide(demonstrations: &Demonstrations, noise: &Noise, notes: &mut
     taken
 }
 
-/// Means of so many samples in a row; a rest shorter than that is left out. Movements of fewer than two means stay.
+/// Averages each `taken` successive samples; a shorter remainder is dropped. Movements of fewer than two means are
+/// unchanged.
 ///
 /// # Errors
-/// Where means overflow.
+/// If means overflow.
 ///
 /// # Panics
 /// If `taken` is 0.

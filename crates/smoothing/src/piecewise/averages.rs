@@ -1,4 +1,4 @@
-//! States and velocities averaged over all windows and degrees, by their probability.
+//! States and velocities averaged over all windows and degrees, weighted by probability.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -7,11 +7,11 @@ use crate::piecewise::scaled::ScaledMovement;
 use crate::piecewise::segmentation::Segmentation;
 use crate::piecewise::windows::{Bases, Energy};
 
-/// Of windows up to [`MANY`] samples, those less likely than e to this power take no part.
+/// Least log probability of a window that takes part, if windows have up to [`MANY`] samples.
 const LEAST_LOG_PROBABILITY: f64 = -9.0;
 const MANY: f64 = 60.0;
 
-/// Windows of one degree with less weight take no part.
+/// Least weight of a window with one degree that takes part.
 const LEAST_WEIGHT: f64 = 1e-5;
 
 /// Estimates of a movement, averaged over windows, in scaled axes about its mean.
@@ -24,12 +24,12 @@ pub(crate) struct Averages {
     pub(crate) window_begins: DVector<f64>,
 }
 
-/// A weighted mean and its variance per axis at every sample: inside the windows plus between them.
+/// A weighted mean and its variance per axis at every sample: variance inside the windows plus variance between them.
 #[derive(Debug)]
 pub(crate) struct Average {
-    /// (d, N).
+    /// Mean, (d, N).
     pub(crate) mean: DMatrix<f64>,
-    /// (N), a mean over the axes.
+    /// Variance, (N), averaged over the axes.
     pub(crate) variance: DVector<f64>,
 }
 
@@ -46,7 +46,7 @@ impl Averages {
         let (mut states, mut velocities) = (Sum::new(dim, n), Sum::new(dim, n));
         let (mut coefficients, mut shrunk) = (Vec::new(), Vec::new());
         let mut by_degree = vec![0.0; model.degrees.len()];
-        // L²/2 windows share a sample, so that each of longer ones is less likely.
+        // About L²/2 windows contain each sample, so that longer windows are individually less likely.
         let least = LEAST_LOG_PROBABILITY + 2.0 * (MANY / segmentation.longest as f64).ln().min(0.0);
         for ((window, log_probability), energy) in segmentation.log_probabilities().zip(energies) {
             window_begins[window.first] += log_probability.exp();
@@ -81,7 +81,7 @@ impl Averages {
 struct Fit<'a> {
     dim: usize,
     weight: f64,
-    /// f_k up to its degree.
+    /// f_k up to the fit's degree.
     factors: &'a [f64],
     /// f_k c_kj at `k * dim + j`.
     shrunk: &'a [f64],
@@ -106,7 +106,7 @@ impl Sum {
         }
     }
 
-    /// Adds a fit's estimate at a sample, with `row` the polynomials' values there times `unit`.
+    /// Adds a fit's estimate at a sample; `row` holds the polynomials' values there, which are multiplied by `unit`.
     fn add(&mut self, sample: usize, fit: &Fit<'_>, row: &[f64], unit: f64) {
         self.value.fill(0.0);
         let mut inside = 0.0;

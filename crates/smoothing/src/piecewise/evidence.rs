@@ -4,20 +4,20 @@ use std::f64::consts::PI;
 
 use crate::piecewise::windows::{Energy, MAX_COLUMNS};
 
-/// The prior variance of the offset is so many times that of the samples: τ₀² = 4c.
+/// Ratio of the offset's prior variance to the samples' variance: τ₀² = 4c.
 const OFFSET_VARIANCE: f64 = 4.0;
 
-/// Prior standard deviations fall by this factor with every degree: τ_k² = c · 0.15^(2k).
+/// Factor between the prior standard deviations of consecutive degrees: τ_k² = c · 0.15^(2k).
 const DECAY: f64 = 0.15;
 
-/// The noise model at one noise variance s²: what (S15) needs of a window besides its energy.
+/// The noise model for one noise variance s²: the quantities in (S15) besides a window's energy.
 #[derive(Debug)]
 pub(crate) struct NoiseModel<'a> {
     pub(crate) degrees: &'a [usize],
     /// s², in squared units of the scaled axes.
     pub(crate) noise_variance: f64,
     dim: f64,
-    /// By number of samples, from 2 on.
+    /// One for each number of samples, from 2 on.
     shrinkage: Vec<Shrinkage>,
 }
 
@@ -41,7 +41,7 @@ impl<'a> NoiseModel<'a> {
         &self.shrinkage[samples - 2]
     }
 
-    /// log ev(a, b, p) for each degree in the order given; −∞ where the window has too few samples for it.
+    /// log ev(a, b, p) for each degree in the given order; −∞ if the window has too few samples for it.
     pub(crate) fn log_evidence(&self, samples: usize, energy: &Energy, by_degree: &mut [f64]) {
         let Shrinkage { factors, log_determinants, .. } = self.shrinkage(samples);
         let mut explained = [0.0; MAX_COLUMNS];

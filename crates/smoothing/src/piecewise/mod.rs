@@ -1,4 +1,4 @@
-//! The smoother by piecewise polynomials, (S15) and (S16).
+//! The piecewise-polynomial smoother, (S15) and (S16).
 
 pub(crate) mod averages;
 pub(crate) mod evidence;

@@ -1,4 +1,4 @@
-//! The noise variance of the highest marginal likelihood.
+//! The noise variance with the highest marginal likelihood.
 
 use motion::median;
 use rayon::prelude::*;
@@ -7,19 +7,19 @@ use crate::noise::differences;
 use crate::piecewise::scaled::Scaled;
 use crate::piecewise::windows::{Bases, Energy, energies};
 
-/// So many trajectories, evenly spread, are enough to estimate the noise.
+/// Largest number of trajectories, evenly spread, from which the noise is estimated.
 const TRAJECTORIES: usize = 12;
 
-/// The hill climb over log₁₀ s²: first step, what it is divided by at a top, the step at which it ends, most rounds.
+/// Hill climbing over log₁₀ s²: first step, divisor of the step at a maximum, smallest step, largest number of rounds.
 const FIRST_STEP: f64 = 1.0;
 const REFINEMENT: f64 = 2.5;
 const LAST_STEP: f64 = 0.06;
 const ROUNDS: usize = 12;
 
-/// Least s², in units of the samples' variance: below it the evidence is rounding.
+/// Least s², in units of the samples' variance; below it, rounding errors dominate the evidence.
 const LEAST: f64 = 1e-13;
 
-/// Energies of the trajectories from which the noise is estimated: index and windows.
+/// Index and window energies of each trajectory from which the noise is estimated.
 pub(crate) type SomeEnergies = Vec<(usize, Vec<Energy>)>;
 
 /// Energies of up to 12 evenly spread trajectories.
@@ -29,7 +29,7 @@ pub(crate) fn some_energies(scaled: &Scaled<'_>, bases: &Bases, longest: usize) 
     chosen.into_par_iter().map(|k| (k, energies(&scaled.movements[k], bases, longest))).collect()
 }
 
-/// s² of highest evidence, by a hill climb that begins at the third differences.
+/// s² with the highest evidence, found by hill climbing from the estimate by third differences.
 ///
 /// `log_evidence` sums (S16) over trajectories at a given s².
 pub(crate) fn most_likely(scaled: &Scaled<'_>, log_evidence: impl Fn(f64) -> f64) -> f64 {
@@ -53,7 +53,7 @@ pub(crate) fn most_likely(scaled: &Scaled<'_>, log_evidence: impl Fn(f64) -> f64
     10f64.powf(at)
 }
 
-/// (median |third difference| / 0.6745)² / 20 over all axes: 20 is the sum of squared binomials.
+/// (median |third difference| / 0.6745)² / 20 over all axes; 20 is the sum of the squared binomials.
 fn first_guess(scaled: &Scaled<'_>) -> f64 {
     let differences: Vec<f64> = scaled
         .movements

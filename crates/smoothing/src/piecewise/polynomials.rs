@@ -1,6 +1,6 @@
 //! Orthonormal polynomials on the times of a window, and their slopes.
 
-/// Polynomials of degree 0, 1, … that are orthonormal on given times: Q and Q' of (S15).
+/// Polynomials of degree 0, 1, … that are orthonormal on given times: Q and Q' in (S15).
 #[derive(Debug, Clone)]
 pub(crate) struct Polynomials {
     degrees: usize,
@@ -11,13 +11,13 @@ pub(crate) struct Polynomials {
 }
 
 impl Polynomials {
-    /// On times τ in [−1, 1], by modified Gram–Schmidt of 1, τ, τ², …, twice; with as many degrees as requested and as
-    /// there are times.
+    /// Polynomials on times τ in [−1, 1], by two passes of modified Gram–Schmidt on 1, τ, τ², …; as many degrees as
+    /// requested, but at most one per time.
     pub(crate) fn on(tau: &[f64], degrees: usize) -> Self {
         let degrees = degrees.min(tau.len());
         let (mut values, mut slopes) =
             (Vec::<Vec<f64>>::with_capacity(degrees), Vec::<Vec<f64>>::with_capacity(degrees));
-        // τ^k and its slope k·τ^(k−1), for the k at hand.
+        // τ^k and its slope k·τ^(k−1) for the current k.
         let (mut power, mut power_slope) = (vec![1.0; tau.len()], vec![0.0; tau.len()]);
         for k in 0..degrees {
             let (mut value, mut slope) = (power.clone(), power_slope.clone());
@@ -40,7 +40,7 @@ impl Polynomials {
         Polynomials { degrees, values: by_sample(&values, tau.len()), slopes: by_sample(&slopes, tau.len()) }
     }
 
-    /// On ascending times in seconds, in units of half their span from its middle.
+    /// Polynomials on ascending times in seconds, scaled by half their span about its middle.
     pub(crate) fn at(times: &[f64], degrees: usize) -> Self {
         let (begin, end) = (times[0], times[times.len() - 1]);
         let (middle, half) = (f64::midpoint(begin, end), (end - begin) / 2.0);
@@ -48,19 +48,19 @@ impl Polynomials {
         Self::on(&tau, degrees)
     }
 
-    /// On `samples` evenly spaced times.
+    /// Polynomials on `samples` evenly spaced times.
     pub(crate) fn even(samples: usize, degrees: usize) -> Self {
         let last = samples as f64 - 1.0;
         let tau: Vec<f64> = (0..samples).map(|i| (2.0 * i as f64 - last) / last).collect();
         Self::on(&tau, degrees)
     }
 
-    /// Q at sample i, one entry a degree.
+    /// Q at sample i, one entry per degree.
     pub(crate) fn values(&self, i: usize) -> &[f64] {
         &self.values[i * self.degrees..][..self.degrees]
     }
 
-    /// Q' at sample i, one entry a degree, per unit of τ.
+    /// Q' at sample i, one entry per degree, per unit of τ.
     pub(crate) fn slopes(&self, i: usize) -> &[f64] {
         &self.slopes[i * self.degrees..][..self.degrees]
     }
@@ -79,7 +79,7 @@ impl Polynomials {
     }
 }
 
-/// One row a sample of one column a degree.
+/// Transposes columns, one per degree, to one row per sample.
 fn by_sample(columns: &[Vec<f64>], samples: usize) -> Vec<f64> {
     (0..samples).flat_map(|i| columns.iter().map(move |column| column[i])).collect()
 }
@@ -126,7 +126,7 @@ mod tests {
             }
         }
 
-        /// A polynomial of the highest degree is reproduced, with its slope.
+        /// A polynomial of the highest degree and its slope are reproduced.
         #[test]
         fn a_polynomial_and_its_slope_are_reproduced(tau in times(), factors in vec(-2.0..2.0f64, 1..7)) {
             let q = Polynomials::on(&tau, factors.len());

@@ -1,4 +1,4 @@
-//! Input of the smoother: axes of equal noise, each movement about its mean.
+//! Input of the smoother: axes scaled to equal noise, each movement centred on its mean.
 
 use motion::{Demonstrations, Trajectory, standard_deviation};
 use nalgebra::DVector;
@@ -12,7 +12,7 @@ use crate::error::require;
 pub enum AxisScale {
     /// Its standard deviation over all samples.
     StandardDeviation,
-    /// As given, (n), all positive: where the sensors' noise is known per axis.
+    /// As given, (n), all positive: for sensors with known noise per axis.
     Given(DVector<f64>),
 }
 
@@ -20,19 +20,19 @@ pub enum AxisScale {
 #[derive(Debug)]
 pub(crate) struct Scaled<'a> {
     pub(crate) movements: Vec<ScaledMovement<'a>>,
-    /// Divisor of each axis, (n); 0 where an axis never moves and is left out.
+    /// Divisor of each axis, (n); 0 if an axis never moves and is left out.
     pub(crate) scales: DVector<f64>,
     /// c of (S15): mean over the moving axes of the variance of all samples, in scaled axes.
     pub(crate) variance: f64,
 }
 
-/// One movement in the axes that move at all.
+/// One movement in the moving axes.
 #[derive(Debug)]
 pub(crate) struct ScaledMovement<'a> {
     pub(crate) recorded: &'a Trajectory,
     /// Number of moving axes d.
     pub(crate) dim: usize,
-    /// y_ij at `i * dim + j`: scaled, about the movement's mean.
+    /// y_ij at `i * dim + j`: scaled, minus the movement's mean.
     pub(crate) rows: Vec<f64>,
 }
 

@@ -3,21 +3,21 @@
 use crate::piecewise::evidence::{NoiseModel, log_sum_exp};
 use crate::piecewise::windows::{Energy, Window, windows};
 
-/// The evidence of every window of a movement, and of every cut of it into windows.
+/// The evidence of every window of a movement, and of all segmentations into windows.
 #[derive(Debug)]
 pub(crate) struct Segmentation {
     n_samples: usize,
     pub(crate) longest: usize,
     log_switch: f64,
     log_stay: f64,
-    /// S(a, b) at `a * longest + (b − a)`; −∞ where there is no such window.
+    /// S(a, b) at `a * longest + (b − a)`; −∞ if there is no such window.
     window: Vec<f64>,
     /// f_b: evidence of the first b samples.
     forward: Vec<f64>,
 }
 
 impl Segmentation {
-    /// `switch_probability` is q: how likely a window ends at a sample.
+    /// `switch_probability` is q, the probability that a window ends at a sample.
     pub(crate) fn new(
         n_samples: usize,
         longest: usize,

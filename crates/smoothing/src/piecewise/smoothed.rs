@@ -3,18 +3,18 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::piecewise::averages::Averages;
 
-/// Movements without their noise.
+/// Movements without noise.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Smoothed {
     /// In the order of the demonstrations.
     pub movements: Vec<SmoothedMovement>,
-    /// Standard deviation of the noise of each dimension, (n), in its unit; 0 where a dimension never changes.
+    /// Standard deviation of the noise of each dimension, (n), in its unit; 0 if a dimension never changes.
     pub noise: DVector<f64>,
     /// The noise variance s², in squared units of the scaled axes.
     pub noise_variance: f64,
 }
 
-/// One movement without its noise.
+/// One movement without noise.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SmoothedMovement {
     /// States x̂, (n, N).
@@ -32,7 +32,7 @@ pub struct SmoothedMovement {
 }
 
 impl SmoothedMovement {
-    /// From scaled axes back into the recorded ones; `scales` (n) has zeros at axes that never move.
+    /// Converts scaled axes to the recorded ones; `scales` (n) has zeros for axes that never move.
     pub(crate) fn unscaled(
         averages: Averages,
         log_evidence: f64,

@@ -14,27 +14,27 @@ use crate::piecewise::windows::{Bases, Energy, MAX_COLUMNS, energies};
 
 /// Bayesian piecewise polynomials: states and velocities with their variances, from noisy positions alone, (S15), (S16).
 ///
-/// A movement falls into windows; within one every dimension is a polynomial of time, and between two of them anything
-/// may change, as it does when a constraint switches. Where windows begin and of which degree they are is not decided:
-/// all segmentations of a movement are weighted by their evidence (forward–backward recursion, Fearnhead 2006).
+/// A movement consists of windows. Within a window every dimension is a polynomial of time; between two windows anything
+/// may change, for instance when a constraint switches. The beginnings and degrees of windows are not fixed: all
+/// segmentations of a movement are weighted by their evidence (forward–backward recursion, Fearnhead 2006).
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Smoother {
-    /// Degrees that a window may have, equally likely beforehand; at most 7.
+    /// Candidate degrees of a window, with equal prior probability; at most 7.
     pub degrees: Vec<usize>,
-    /// Most samples in a window, at least 3: windows of two alone cannot make up an odd number of samples.
+    /// Largest number of samples in a window, at least 3: windows of two alone cannot make up an odd number of samples.
     pub longest_window: usize,
     /// Probability that a window ends at a sample, between 0 and 1.
     pub switch_probability: f64,
-    /// Divisor of each axis, after which the noise should be equal in all axes.
+    /// Divisor of each axis; the scaled axes should have equal noise.
     pub axis_scale: AxisScale,
-    /// The variance of that noise.
+    /// The variance of this noise.
     pub noise: NoiseVariance,
 }
 
 /// The variance of the noise: estimated or given.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub enum NoiseVariance {
-    /// The one of the highest marginal likelihood.
+    /// The one with the highest marginal likelihood.
     ByEvidence,
     /// s², positive, in squared units of the scaled axes.
     Given(f64),
@@ -42,7 +42,7 @@ pub enum NoiseVariance {
 
 impl Default for Smoother {
     /// Degrees 1, 2, 3 and 5, windows of up to 60 samples, a switch every 33 samples, axes scaled by their standard
-    /// deviation, noise by evidence.
+    /// deviation, noise estimated by evidence.
     fn default() -> Self {
         Smoother {
             degrees: vec![1, 2, 3, 5],
@@ -57,7 +57,8 @@ impl Default for Smoother {
 impl Smoother {
     /// Smooths the positions of every demonstration and ignores recorded velocities.
     ///
-    /// Takes time O(N · L² · p · n) and memory O(N · L) a trajectory, L the longest window, p the highest degree.
+    /// Takes time O(N · L² · p · n) and memory O(N · L) per trajectory, where L is the longest window and p the highest
+    /// degree.
     ///
     /// # Errors
     /// [`SmoothingError::Parameter`], [`SmoothingError::AxisScales`], [`SmoothingError::NoMotion`] or
@@ -98,7 +99,7 @@ impl Smoother {
     }
 }
 
-/// The constants of smoothing one set of movements.
+/// The constants for smoothing one set of movements.
 struct Run<'a> {
     smoother: &'a Smoother,
     scaled: &'a Scaled<'a>,

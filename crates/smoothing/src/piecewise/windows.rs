@@ -1,14 +1,14 @@
-//! Statistics of every window that do not depend on the noise.
+//! Statistics of every window that are independent of the noise.
 
 use std::borrow::Cow;
 
 use crate::piecewise::polynomials::Polynomials;
 use crate::piecewise::scaled::ScaledMovement;
 
-/// Degrees that a window may be fitted with end below this number.
+/// Upper bound (exclusive) of the degrees of a window.
 pub(crate) const MAX_COLUMNS: usize = 8;
 
-/// A window of 2 or more samples; neighbouring windows share none.
+/// A window of 2 or more samples; neighbouring windows do not overlap.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Window {
     pub(crate) first: usize,
@@ -20,11 +20,11 @@ pub(crate) struct Window {
 pub(crate) struct Energy {
     /// Σ y² over the window.
     pub(crate) total: f64,
-    /// Σ_j c_kj² of every degree k.
+    /// Σ_j c_kj² for every degree k.
     pub(crate) of_degree: [f64; MAX_COLUMNS],
 }
 
-/// Polynomials of evenly spaced windows, by number of samples: the same for every trajectory and time step.
+/// Polynomials for evenly spaced windows, by number of samples; they are the same for every trajectory and time step.
 #[derive(Debug)]
 pub(crate) struct Bases {
     columns: usize,
@@ -32,12 +32,12 @@ pub(crate) struct Bases {
 }
 
 impl Bases {
-    /// For windows of up to `longest` samples and degrees below `columns`.
+    /// Polynomials for windows of up to `longest` samples and degrees below `columns`.
     pub(crate) fn new(longest: usize, columns: usize) -> Self {
         Bases { columns, even: (2..=longest).map(|samples| Polynomials::even(samples, columns)).collect() }
     }
 
-    /// The polynomials on a window's times.
+    /// The polynomials for a window's times.
     pub(crate) fn of(&self, movement: &ScaledMovement<'_>, window: Window) -> Cow<'_, Polynomials> {
         match movement.recorded.times() {
             None => Cow::Borrowed(&self.even[window.samples - 2]),

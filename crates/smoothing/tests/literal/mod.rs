@@ -1,9 +1,10 @@
-//! The smoother read literally: every way to cut a movement into windows, each with a dense covariance.
+//! The smoother by its literal definition: every segmentation of a movement into windows, each with a
+//! dense covariance.
 
 use nalgebra::{DMatrix, DVector};
 use smoothing::Smoother;
 
-/// What all cuts together say of one movement, averaged as the smoother does.
+/// The estimates of all segmentations of one movement, averaged like the smoother's.
 pub(crate) struct Literal {
     pub(crate) log_evidence: f64,
     pub(crate) states: DMatrix<f64>,
@@ -17,7 +18,7 @@ pub(crate) struct Literal {
 struct Fit {
     first: usize,
     log_evidence: f64,
-    /// (n, samples).
+    /// States and velocities, (n, samples).
     states: DMatrix<f64>,
     velocities: DMatrix<f64>,
     /// Variances per axis.
@@ -25,7 +26,7 @@ struct Fit {
     velocity_variance: DVector<f64>,
 }
 
-/// `y` (n, N) at `times`, about its mean; `c` the variance of all samples.
+/// Smooths `y` (n, N) at `times`, centred on its mean; `c` is the variance of all samples.
 pub(crate) fn smooth(smoother: &Smoother, times: &[f64], y: &DMatrix<f64>, c: f64, s2: f64) -> Literal {
     let n = y.ncols();
     let fits: Vec<Vec<Fit>> = spans(n, smoother.longest_window)
@@ -67,7 +68,7 @@ fn spans(n: usize, longest: usize) -> impl Iterator<Item = (usize, usize)> {
     (0..n).flat_map(move |a| (a + 1..n.min(a + longest)).map(move |b| (a, b)))
 }
 
-/// Every way to cut samples from `from` on into windows, as indices into `windows`.
+/// Every segmentation of the samples from `from` on into windows, as indices into `windows`.
 fn cuts(from: usize, n: usize, windows: &[((usize, usize), f64)]) -> Vec<Vec<usize>> {
     if from == n {
         return vec![Vec::new()];

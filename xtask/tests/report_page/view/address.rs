@@ -1,11 +1,11 @@
-//! The state of the view in the address of the page.
+//! The view's state in the address of the page.
 
 use serde_json::Value;
 
 use super::{page, view};
 use crate::browser::Page;
 
-/// What is kept.
+/// The part of the state that is kept.
 fn kept(page: &mut Page) -> Value {
     page.evaluate(
         "(({ playing, azimuth, elevation, distance, x, y, z, ...kept }) =>

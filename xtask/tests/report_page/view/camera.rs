@@ -1,9 +1,9 @@
-//! The camera's centre: what is dragged, zoomed in on or clicked twice.
+//! The camera's centre after dragging, zooming and double-clicking.
 
 use super::{CANVAS, at_rest, opened_on, page, state, view};
 use crate::browser::{Page, Point};
 
-/// Where the ball is in the window.
+/// Position of the ball in the window.
 fn ball(page: &mut Page) -> Point {
     page.evaluate(
         "(() => {
@@ -31,14 +31,14 @@ fn right_button_and_shift_move_the_picture_with_the_mouse() {
         page.drag_with(button, modifiers, (x, y), (x + 60.0, y - 40.0));
         assert!(state(&mut page, "azimuth").to_bits() == azimuth.to_bits(), "{button} turns");
         let moved = ball(&mut page);
-        // The ball is a little nearer than the centre.
+        // The ball is slightly closer to the camera than the centre.
         assert!(apart(moved, (before.0 + 60.0, before.1 - 40.0)) < 12.0, "{button}: {before:?}, then {moved:?}");
     }
 }
 
 #[test]
 fn the_wheel_keeps_what_is_under_the_mouse() {
-    // On fewer pixels some turns of the wheel do not arrive.
+    // With fewer pixels some turns of the wheel get lost.
     let Some(mut page) = opened_on(1.0).map(at_rest) else { return };
     page.prefer("prefers-reduced-motion", "reduce");
     view::<()>(&mut page, "look('front')");

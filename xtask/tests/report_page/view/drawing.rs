@@ -1,4 +1,4 @@
-//! What is chosen is drawn.
+//! The view draws the selected movement.
 
 use serde_json::Value;
 

@@ -1,4 +1,4 @@
-//! The view's own forward kinematics against the library's.
+//! Compares the view's forward kinematics with the library's.
 
 use std::fs;
 
@@ -42,7 +42,7 @@ fn no_hand_goes_through_table_or_plates_and_through_the_ball_only_where_it_is_sa
     assert_eq!(faults, Vec::<String>::new());
 }
 
-/// All samples of all movements that can be chosen.
+/// Checks all samples of all movements that can be selected.
 const FAULTS: &str = "(() => {
     const { scene: { table, ball, wall }, constraints, learners, movements } =
         JSON.parse(document.getElementById('grasp-playback').textContent);
@@ -87,7 +87,7 @@ fn joints(robot: &RobotModel, playback: &Value, row: &Value) -> DVector<f64> {
     q
 }
 
-/// Where the palms are.
+/// Positions of the palms.
 fn hands(robot: &RobotModel, q: &DVector<f64>) -> [Vector3<f64>; 2] {
     let mut workspace = Workspace::new();
     ["l_palm", "r_palm"].map(|palm| {

@@ -1,4 +1,4 @@
-//! Legs are drawn from hips that go with the trunk to feet that stand.
+//! Legs are drawn from hips that move with the trunk to feet that stay in place.
 
 use kinematics::{RobotModel, Workspace};
 use nalgebra::{DVector, Point3};
@@ -31,7 +31,7 @@ fn hips_go_with_the_trunk_and_feet_stand() {
                 assert!((hip - pose * Point3::new(0.0, side, -0.06)).norm() < 1e-6, "{hip}");
                 assert!((ankle - Point3::new(0.05, side, 0.08)).norm() < 1e-9, "{ankle}");
                 let bones = [(knee - hip).norm(), (ankle - knee).norm()];
-                // Of one length, and where legs are too short drawn apart by a twentieth at most.
+                // Both have the same length. If legs are too short, the bones are drawn apart by at most a twentieth.
                 assert!((bones[0] - bones[1]).abs() < 1e-9 && (0.264..0.279).contains(&bones[0]), "{bones:?}");
             }
         }

@@ -1,4 +1,4 @@
-//! Light, dark, paper, phone, and browsers that cannot draw it.
+//! The view in light and dark mode, in print, on a phone, and in browsers that cannot draw it.
 
 use std::fs;
 

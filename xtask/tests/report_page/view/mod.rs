@@ -1,4 +1,4 @@
-//! The interactive view: it draws, does as it is told, and its hands are where forward kinematics has them.
+//! The interactive view: it draws, reacts to its controls, and its hands agree with forward kinematics.
 
 mod address;
 mod camera;
@@ -22,15 +22,15 @@ use super::browser::Page;
 
 const CANVAS: &str = "#view canvas";
 
-/// Pixels of the screen for each CSS pixel along a side: few are drawn quickly.
+/// Number of screen pixels per CSS pixel along a side; few pixels are drawn quickly.
 const PIXELS: f64 = 0.5;
 
-/// The folder of a quick run of the grasp, made once: so what the program computes today is looked at.
+/// The folder of a quick run of the grasp, made once, so that the tests examine the program's current output.
 fn run() -> &'static Path {
     static FOLDER: OnceLock<PathBuf> = OnceLock::new();
     FOLDER.get_or_init(|| {
         let out = Path::new(env!("CARGO_TARGET_TMPDIR")).join("grasp");
-        // What an earlier program left there is not looked at.
+        // Removes the output of an earlier program.
         let _ = fs::remove_dir_all(&out);
         let mut program = Command::new(env!("CARGO_BIN_EXE_xtask"));
         program.args(["reproduce", "--quick", "--only", "table2", "--seed", "1", "--out"]).arg(&out);
@@ -40,19 +40,19 @@ fn run() -> &'static Path {
     })
 }
 
-/// The page with the view, unless there is no browser; before one gets to the view, so that it has not begun to play.
+/// The page with the view, before the user scrolls to it, so that it does not play yet; `None` without a browser.
 fn opened() -> Option<Page> {
     opened_on(PIXELS)
 }
 
-/// The same on a screen with so many pixels for each CSS pixel along a side.
+/// The same on a screen with `pixels` screen pixels per CSS pixel along a side.
 fn opened_on(pixels: f64) -> Option<Page> {
     let mut page = Page::open_on(&run().join("report.html"), pixels)?;
     page.wait_until("'policyAlignView' in window");
     Some(page)
 }
 
-/// The view, which does not play by itself.
+/// The page with the stopped view.
 fn page() -> Option<Page> {
     opened().map(at_rest)
 }
@@ -64,22 +64,22 @@ fn at_rest(mut page: Page) -> Page {
     page
 }
 
-/// Tells the view something, and what it answers.
+/// Calls a method of the view and returns its result.
 fn view<T: DeserializeOwned>(page: &mut Page, what: &str) -> T {
     page.evaluate(&format!("policyAlignView.{what}"))
 }
 
-/// A number of its state.
+/// A number of the view's state.
 fn state(page: &mut Page, name: &str) -> f64 {
     view(page, &format!("state().{name}"))
 }
 
-/// The picture of the present state.
+/// The picture of the current state.
 fn picture(page: &mut Page) -> String {
     page.evaluate(&format!("(policyAlignView.render(), document.querySelector('{CANVAS}').toDataURL())"))
 }
 
-/// The picture is another than before.
+/// Checks that the picture has changed.
 #[track_caller]
 fn assert_another(page: &mut Page, before: &mut String, cause: &str) {
     let now = picture(page);

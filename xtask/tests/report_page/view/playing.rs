@@ -1,4 +1,4 @@
-//! It plays by itself once, again and again where that is asked for, and the curves go with it.
+//! The view plays by itself once, or repeatedly on request, and the curves follow.
 
 use super::{CANVAS, opened, page, state, view};
 
@@ -8,7 +8,7 @@ fn it_plays_once_when_it_is_seen() {
     assert!(!view::<bool>(&mut page, "state().playing"), "it plays unseen");
     page.middle_of(CANVAS);
     page.wait_until("policyAlignView.state().playing");
-    // Not all of it: a machine without graphics draws slowly.
+    // Skips a part, because a machine without graphics draws slowly.
     view::<()>(&mut page, "seek(95)");
     page.wait_until("!policyAlignView.state().playing");
     let end = state(&mut page, "sample");
@@ -46,7 +46,7 @@ fn the_line_across_the_curves_is_where_the_slider_is() {
     for sample in [0, 25, 99] {
         view::<()>(&mut page, &format!("seek({sample})"));
         view::<()>(&mut page, "render()");
-        // A thumb is 16 pixels wide and stays within its slider.
+        // The slider's thumb is 16 pixels wide and stays within the slider.
         let off: f64 = page.evaluate(
             "(() => {
                 const [line, slider] = ['.view-now', '.view-slider'].map((s) => document.querySelector(s).getBoundingClientRect());

@@ -1,4 +1,4 @@
-//! What stands around the robot: whole in the picture, and as in the figures.
+//! The robot's surroundings: completely in the picture, and as in the figures.
 
 use std::fs;
 use std::io::Cursor;
@@ -15,7 +15,7 @@ fn every_named_view_shows_all_of_it() {
     let side = number("/table/half_width");
     let table = [number("/table/near"), number("/table/far")].map(|x| [[x, side, 0.0], [x, -side, 0.0]]);
     let plates = [side, -side].map(|y| [number("/wall/x"), y, number("/stage/plate_top")]);
-    // The camera is there at once.
+    // With reduced motion the camera moves immediately.
     page.prefer("prefers-reduced-motion", "reduce");
     for width in [1280, 390] {
         page.resize(width, 900);
@@ -45,7 +45,7 @@ fn colours_are_those_of_the_figures() {
         let color = color(name);
         assert!(color.starts_with('#') && drawn.contains(&color), "{name} is {color:?}, in no figure");
     }
-    // Bodies are pixels, light or dark as they face the light, and seen through: the hue remains.
+    // Shading and transparency change the pixels of bodies, but not their hue.
     let hues: Vec<f64> = pixels(&drawn).filter_map(hue).collect();
     for name in ["ball", "plate"] {
         let color = color(name);
@@ -56,7 +56,7 @@ fn colours_are_those_of_the_figures() {
     }
 }
 
-/// All pixels of the pictures within a drawing that show something.
+/// All visible pixels of the bitmaps in an SVG drawing.
 fn pixels(svg: &str) -> impl Iterator<Item = [u8; 3]> {
     let pictures = svg.split("data:image/png;base64,").skip(1).map(|rest| rest.split('"').next().unwrap());
     pictures.flat_map(|text| {
@@ -71,7 +71,7 @@ fn pixels(svg: &str) -> impl Iterator<Item = [u8; 3]> {
     })
 }
 
-/// Hue in degrees; none for what is nearly grey.
+/// Hue in degrees; `None` for colours close to grey.
 fn hue(rgb: [u8; 3]) -> Option<f64> {
     let [r, g, b] = rgb.map(f64::from);
     let (most, least) = (r.max(g).max(b), r.min(g).min(b));

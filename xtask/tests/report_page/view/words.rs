@@ -1,15 +1,15 @@
-//! The words under the picture: whose distances they are, and when they are read out.
+//! The text under the picture: which distances it names, and when it is read aloud.
 
 use super::{page, view};
 
-/// Counts how often the words are written from now on.
+/// Counts from now on how often the text is written.
 const COUNT: &str = "void (written = 0, new MutationObserver(changes => { written += changes.length; })
     .observe(document.querySelector('.view-words'), { childList: true, characterData: true, subtree: true }))";
 
-/// Lets two frames go by, and gives how often words were written so far.
+/// Waits two frames, and returns the count so far.
 const WRITTEN: &str = "new Promise(done => requestAnimationFrame(() => requestAnimationFrame(() => done(written))))";
 
-/// Moves the thumb.
+/// Moves the slider's thumb.
 fn slide(to: u32, event: &str) -> String {
     format!(
         "(slider => {{ slider.value = {to}; slider.dispatchEvent(new Event('{event}')); }})(document.querySelector('input.view-slider'))"
@@ -94,7 +94,7 @@ fn what_the_policy_wants_is_named_where_the_robot_misses_it() {
     }
 }
 
-/// Whether at the end a palm of the robot is more than a millimetre farther from its place, or nearer, than that of the policy.
+/// Whether the final distance between a palm and its target differs between robot and policy by more than a millimetre.
 const MISSED: &str = "(() => {
     const data = JSON.parse(document.getElementById('grasp-playback').textContent);
     const { constraint, start } = policyAlignView.state();

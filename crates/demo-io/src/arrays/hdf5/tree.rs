@@ -4,7 +4,7 @@ use crate::arrays::array::{ArraySpec, Data, Kind};
 use crate::input::Input;
 use crate::{Fault, ReadError};
 
-/// The arrays of a file that were found so far.
+/// The arrays of a file found so far.
 pub(super) struct Tree<'a> {
     pub(super) input: &'a Input<'a>,
     arrays: Vec<(ArraySpec, Dataset)>,
@@ -59,11 +59,12 @@ impl<'a> Tree<'a> {
         Err(ReadError::corrupt(what, &self.input.name))
     }
 
-    /// Chunks that lie in the file: the reader takes memory for a chunk before it looks for it.
+    /// Requires that all chunks lie within the file, because the reader allocates memory for a chunk before it looks
+    /// for it.
     fn require_whole_chunks(&self, described: &ArraySpec, dataset: &Dataset) -> Result<(), ReadError> {
         let outside =
             |chunk: &Chunk| chunk.address.checked_add(chunk.storage_size).is_none_or(|end| end > self.input.len);
-        // Chunks of the one kind of index that cannot be listed are checked by the reader, one by one.
+        // The reader checks chunks with the one kind of index that cannot be listed, one by one.
         if dataset.is_chunked() && dataset.chunks().is_ok_and(|chunks| chunks.iter().any(outside)) {
             let what = format!("'{}' has a part beyond the end of the file", described.with_shape());
             return Err(ReadError::corrupt(what, &self.input.name));

@@ -9,21 +9,21 @@ use crate::{Fault, ReadError};
 
 const COMPRESSED: u32 = 15;
 const MATRIX: u32 = 14;
-/// The class of an object whose numbers are elsewhere in the file, in a form that MATLAB keeps to itself: its name follows its flags,
+/// The class of an object whose numbers are elsewhere in the file, in an undocumented form of MATLAB. Its name follows its flags,
 /// without a size.
 const OPAQUE: u32 = 17;
 
-/// Most structures within each other.
+/// Maximum nesting depth of structures.
 const DEEPEST: usize = 16;
 
-/// Data elements one after another: a tag with type and length, then bytes.
+/// A sequence of data elements: a tag with type and length, then bytes.
 pub(super) struct Elements<'a> {
     bytes: &'a [u8],
     big_endian: bool,
     input: &'a Input<'a>,
 }
 
-/// An element's type and bytes.
+/// Type and bytes of an element.
 struct Element<'a> {
     kind: u32,
     bytes: &'a [u8],
@@ -83,14 +83,14 @@ impl<'a> Elements<'a> {
         Some(if self.big_endian { u32::from_be_bytes(bytes) } else { u32::from_le_bytes(bytes) })
     }
 
-    /// The next element; lengths are believed only if the bytes are there.
+    /// The next element. A length is accepted only if the file has so many bytes.
     fn next(&mut self) -> Result<Element<'a>, ReadError> {
         let cut = || {
             let what = "the file ends within a variable";
             ReadError::truncated(what, &self.input.name)
         };
         let tag = self.u32_at(0).ok_or_else(cut)?;
-        // Up to four bytes stand in the tag itself.
+        // Up to four bytes are stored in the tag itself.
         let (kind, start, len): (u32, usize, usize) = match tag >> 16 {
             0 => (tag, 8, self.u32_at(4).ok_or_else(cut)? as usize),
             len => (tag & 0xffff, 4, len as usize),
@@ -102,7 +102,7 @@ impl<'a> Elements<'a> {
         Ok(Element { kind, bytes })
     }
 
-    /// What a matrix element holds: flags, dimensions, name, content.
+    /// Reads a matrix element: flags, dimensions, name, content.
     fn matrix(mut self, depth: usize) -> Result<(String, Value), ReadError> {
         if self.bytes.is_empty() {
             return Ok((String::new(), Value::empty()));
@@ -174,7 +174,7 @@ impl<'a> Elements<'a> {
 
     fn text(&mut self) -> Result<String, ReadError> {
         let element = self.next()?;
-        // UTF-8, or a number a letter.
+        // UTF-8, or one number per character.
         if matches!(element.kind, 1 | 2 | 16) {
             return Ok(String::from_utf8_lossy(element.bytes).into_owned());
         }
@@ -187,7 +187,7 @@ impl<'a> Elements<'a> {
         let kinds = ["float64", "float32", "int8", "uint8", "int16", "uint16", "int32", "uint32", "int64", "uint64"];
         let kind = kinds[(class - 6) as usize];
         let element = self.next()?;
-        // MATLAB stores whole numbers of any class in the smallest type.
+        // MATLAB stores integers of any class in the smallest type that holds them.
         let data = match (element.kind, class) {
             (7 | 9, _) => Data::Numbers(self.floats(&element)?),
             (_, 6 | 7) => Data::Numbers(self.whole(&element)?.into_iter().map(|value| value as f64).collect()),

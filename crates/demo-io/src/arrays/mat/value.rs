@@ -1,6 +1,6 @@
 use crate::arrays::array::Data;
 
-/// A variable of MATLAB.
+/// A MATLAB variable.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Value {
     Numbers {
@@ -16,12 +16,12 @@ pub(super) enum Value {
         fields: Vec<String>,
         values: Vec<Value>,
     },
-    /// By its name: "complex numbers".
+    /// Another type, by its name: "complex numbers".
     Other(String),
 }
 
 impl Value {
-    /// What `[]` is.
+    /// The value of `[]`.
     pub(super) fn empty() -> Self {
         Value::Numbers { shape: vec![0, 0], kind: "float64", data: Data::Numbers(Vec::new()) }
     }

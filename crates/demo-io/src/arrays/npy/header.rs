@@ -3,15 +3,15 @@ use std::io::Read;
 use super::MAGIC;
 use crate::{Fault, ReadError};
 
-/// What a .npy file says of its array.
+/// The header of a .npy file, which describes its array.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Header {
-    /// 'f', 'i', 'U'.
+    /// Type code: 'f', 'i', 'U'.
     pub(crate) letter: char,
     /// Bytes of one value.
     pub(crate) size: usize,
     pub(super) big_endian: bool,
-    /// Of dates: how many make a second.
+    /// Ticks per second of dates.
     pub(super) ticks: f64,
     pub(super) fortran: bool,
     pub(crate) shape: Vec<usize>,
@@ -19,7 +19,7 @@ pub(crate) struct Header {
     pub(crate) len: u64,
 }
 
-/// Records with very many fields reach 64 kB; more is no header.
+/// Records with very many fields reach 64 kB. A longer text is no header.
 const LONGEST: u32 = 1 << 20;
 
 impl Header {
@@ -48,7 +48,7 @@ impl Header {
         })
     }
 
-    /// `{'descr': '<f8', 'fortran_order': False, 'shape': (40, 40, 2), }`
+    /// Parses `{'descr': '<f8', 'fortran_order': False, 'shape': (40, 40, 2), }`.
     fn parse(text: &str, len: u64) -> Option<Self> {
         let descr = value_of(text, "descr")?;
         let fortran = value_of(text, "fortran_order")?.starts_with("True");
@@ -65,7 +65,7 @@ impl Header {
     }
 }
 
-/// What follows `'key':`.
+/// The text that follows `'key':`.
 fn value_of<'a>(text: &'a str, key: &str) -> Option<&'a str> {
     let at = text.find(&format!("'{key}'")).or_else(|| text.find(&format!("\"{key}\"")))?;
     text[at + key.len() + 2..].trim_start().strip_prefix(':').map(str::trim_start)

@@ -4,7 +4,7 @@ use super::Header;
 use crate::arrays::array::Data;
 use crate::rows::stamps::TicksPerSecond;
 
-/// Reads `count` values; memory grows with what is really there.
+/// Reads `count` values; memory grows only with the bytes that arrive.
 pub(super) fn read(header: &Header, count: usize, from: &mut dyn Read) -> io::Result<Data> {
     let (size, big) = (header.size, header.big_endian);
     if matches!(header.letter, 'U' | 'S') {
@@ -60,7 +60,7 @@ fn widened(bytes: &[u8], big_endian: bool) -> [u8; 8] {
     wide
 }
 
-/// A half-precision number.
+/// Converts a half-precision number.
 pub(crate) fn half(bits: u16) -> f64 {
     let sign = if bits >> 15 == 1 { -1.0 } else { 1.0 };
     let fraction = f64::from(bits & 0x3ff) / 1024.0;
@@ -72,7 +72,7 @@ pub(crate) fn half(bits: u16) -> f64 {
     }
 }
 
-/// UTF-32, padded with zeros.
+/// Decodes UTF-32, padded with zeros.
 fn wide_text(bytes: &[u8], big_endian: bool) -> String {
     let letters = bytes.chunks_exact(4).map(|code| {
         let code = [code[0], code[1], code[2], code[3]];

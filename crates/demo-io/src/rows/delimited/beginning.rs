@@ -8,18 +8,18 @@ use crate::rows::roles::{Column, HEAD_ROWS, content};
 use crate::rows::table::{Row as _, Table};
 use crate::{Fault, ReadError, SamplesAre};
 
-/// A text of which the first records have been read: they say how to read all others.
+/// A text whose first records have been read. They determine how to read all others.
 pub(super) struct Beginning<'a> {
     pub(super) dialect: Dialect,
     pub(super) header: Option<Vec<String>>,
-    /// The first records with their lines.
+    /// The first records with their line numbers.
     pub(super) head: Vec<(u64, ByteRecord)>,
-    /// Those that follow.
+    /// The records that follow.
     pub(super) records: Records<'a>,
 }
 
 impl<'a> Beginning<'a> {
-    /// `is_cut`: whether it is asked at which bytes records begin.
+    /// `is_cut`: whether [`Records::byte_of`] will be called.
     pub(super) fn of(input: &Input<'_>, progress: &'a mut dyn FnMut(u64), is_cut: bool) -> Result<Self, ReadError> {
         let dialect = Dialect::of(input)?;
         let mut records = Records::new(TextSource::new(input, &dialect, progress, is_cut)?, &dialect, &input.name);
@@ -36,7 +36,7 @@ impl<'a> Beginning<'a> {
             let Some(line) = records.next(&mut record)? else { break };
             head.push((line, record.clone()));
         }
-        // What columns hold is judged by these records.
+        // These records determine the contents of columns.
         let again = |(_, record): &&(u64, ByteRecord)| header.as_ref().is_some_and(|names| is_header(record, names));
         match head.iter().find(again) {
             Some((line, _)) => Err(header_again(*line, &input.name)),
@@ -44,12 +44,12 @@ impl<'a> Beginning<'a> {
         }
     }
 
-    /// Whether each line is a channel.
+    /// Whether each line holds a channel.
     pub(super) fn is_transposed(&self, input: &Input<'_>) -> bool {
         self.header.is_none() && input.options.samples_are == Some(SamplesAre::Columns)
     }
 
-    /// A table that has the first records.
+    /// A table that contains the first records.
     pub(super) fn table(&self, input: &Input<'_>) -> Result<Table, ReadError> {
         let Self { dialect, header, head, .. } = self;
         let Some((first_line, first)) = head.first() else {
@@ -88,19 +88,19 @@ impl<'a> Beginning<'a> {
     }
 }
 
-/// Whether a record is the header once more.
+/// Whether a record repeats the header.
 pub(super) fn is_header(record: &ByteRecord, names: &[String]) -> bool {
     let is_name = |(field, name): (&[u8], &String)| field.trim_ascii() == name.as_bytes();
     names.len() == record.len() && record.iter().zip(names).all(is_name)
 }
 
-/// Of a text that was joined from several.
+/// Error: a text that was joined from several.
 pub(super) fn header_again(line: u64, file: &str) -> ReadError {
     let remedy = "the files as they were before they were joined (several can be named), or one header, and a column that tells episodes apart";
     ReadError::NotANumber(Fault::new("the header is repeated", format!("{file}, line {line}"), remedy))
 }
 
-/// The first record if it is a header; otherwise it goes to `head`.
+/// Returns the first record if it is a header; otherwise moves it to `head`.
 fn header(
     records: &mut Records<'_>,
     dialect: &Dialect,
@@ -122,13 +122,13 @@ fn header(
     })
 }
 
-/// What pandas writes where columns have no names: `,0,1,2`.
+/// Whether a record is pandas' header for columns without names: `,0,1,2`.
 fn is_counted(record: &ByteRecord) -> bool {
     let names = record.iter().enumerate().filter(|(at, field)| *at > 0 || !field.is_empty());
     record.len() > 2 && names.enumerate().all(|(number, (_, field))| field == number.to_string().as_bytes())
 }
 
-/// A decimal comma among points.
+/// Advice on a decimal comma among decimal points.
 fn hint(text: &str) -> Option<String> {
     let (whole, decimals) = text.split_once(',')?;
     let digits = |text: &str| {

@@ -11,11 +11,11 @@ use crate::regular_file::FileState;
 use crate::rows::piece::{Cuts, Span, Start};
 use crate::rows::table::{Cutting, Row as _};
 
-/// Where a part begins, its reader would take it for none of the text.
+/// At the start of a part, its reader would skip this mark instead of reading it as text.
 const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
 
-/// Parts of whole movements, of at most so many bytes unless a movement has more; none of a text that cannot be cut: without a column of
-/// episodes, or with one whose labels come back.
+/// Cuts a text into parts of whole movements, each of at most `most` bytes unless a movement has more. Returns no part if the text
+/// cannot be cut: it has no column of episodes, or one whose labels recur.
 pub(crate) fn cut(
     input: &Input<'_>,
     (most, of): (u64, FileState),
@@ -53,23 +53,23 @@ pub(crate) fn cut(
     }
 }
 
-/// Episodes so far, by their labels.
+/// The episodes so far, by their labels.
 struct Episodes {
     cutting: Cutting,
     seen: HashSet<String>,
-    /// The last record's label, as it is written and as it is meant.
+    /// The last record's label, as written; `label` is its parsed form.
     written: Vec<u8>,
     label: String,
-    /// The first record's label of a constraint, likewise.
+    /// The first record's constraint label, in both forms.
     constraint: Option<(Vec<u8>, String)>,
 }
 
-/// What a record is the next of.
+/// The effect of a record on the cut.
 enum Next {
     Same,
     /// A movement begins.
     New,
-    /// There are no parts that could be read alone.
+    /// The text cannot be divided into parts that could be read alone.
     InTheWay,
 }
 
@@ -94,7 +94,7 @@ impl Episodes {
             return Next::Same;
         }
         self.label.clone_from(&label);
-        // More are refused by who reads the whole.
+        // The reader of the whole file refuses more.
         if self.seen.insert(label) && self.seen.len() <= MOST_EPISODES { Next::New } else { Next::InTheWay }
     }
 

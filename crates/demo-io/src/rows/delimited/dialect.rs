@@ -4,20 +4,20 @@ use super::fields::Fields;
 use crate::input::Input;
 use crate::{Fault, ReadError};
 
-/// How a file separates fields, and what comes before its rows.
+/// The separators of a file, and the lines before its rows.
 #[derive(Debug)]
 pub(super) struct Dialect {
     pub(super) separator: u8,
-    /// Runs of blanks separate.
+    /// Whether runs of blanks separate fields.
     pub(super) blanks: bool,
     pub(super) decimal_comma: bool,
-    /// Bytes of a byte order mark.
+    /// Length of the byte order mark in bytes.
     pub(super) mark: usize,
-    /// Names from the last comment before the rows, as `numpy.savetxt` writes them.
+    /// Names from the last comment before the rows, in `numpy.savetxt`'s form.
     pub(super) header: Option<Vec<String>>,
 }
 
-/// Lines looked at to find the separator.
+/// Number of lines examined to find the separator.
 const LINES: usize = 20;
 
 impl Dialect {
@@ -26,7 +26,7 @@ impl Dialect {
         refuse_other_encodings(head, &input.name)?;
         let mark = if head.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 };
         let text = String::from_utf8_lossy(&head[mark..]);
-        // The last line may be cut.
+        // The last line may be incomplete.
         let whole = if input.len > head.len() as u64 { text.rfind('\n').map_or(0, |end| end + 1) } else { text.len() };
         if whole == 0 && input.len > head.len() as u64 {
             let what = format!("not text with lines: no line ends within {} kB", head.len() / 1024);
@@ -84,8 +84,8 @@ fn refuse_other_encodings(head: &[u8], file: &str) -> Result<(), ReadError> {
     Ok(())
 }
 
-/// The first of tab, semicolon, comma, bar and blank that divides all lines into equally many fields, else the first that
-/// divides the first line; the comma comes after the semicolon, since it may be decimal.
+/// The first of tab, semicolon, comma, bar and blank that divides all lines into the same number of fields, else the
+/// first that divides the first line. The comma comes after the semicolon, because it may be a decimal comma.
 fn separator_of(rows: &[&str]) -> u8 {
     let candidates = [b'\t', b';', b',', b'|', b' '];
     let count = |row: &str, separator: u8| fields(row, separator).len();
@@ -97,7 +97,7 @@ fn separator_of(rows: &[&str]) -> u8 {
     candidates.iter().copied().find(even).or_else(|| candidates.iter().copied().find(divides)).unwrap_or(b',')
 }
 
-/// The fields of a line; separators between quotation marks do not count.
+/// The fields of a line. Separators between quotation marks do not count.
 fn fields(line: &str, separator: u8) -> Vec<String> {
     let mut quoted = false;
     let mut fields = vec![String::new()];
@@ -121,7 +121,7 @@ fn is_number(field: &str) -> bool {
     field.trim().parse::<f64>().is_ok()
 }
 
-/// Some field is a number once its comma is a point, and no number has a point.
+/// Whether some field becomes a number when its comma is replaced by a point, and no number has a point.
 fn has_decimal_commas(rows: &[&str], separator: u8) -> bool {
     let fields: Vec<String> = rows.iter().flat_map(|row| fields(row, separator)).collect();
     let comma = |field: &String| field.contains(',') && is_number(&field.replacen(',', ".", 1));

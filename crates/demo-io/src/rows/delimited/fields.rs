@@ -33,7 +33,7 @@ impl Row for Fields<'_> {
     fn label(&self, column: usize, label: &mut String) {
         label.clear();
         let field = String::from_utf8_lossy(self.record[column].trim_ascii());
-        // What pandas makes of whole numbers in a column with a missing one.
+        // The form in which pandas writes integers of a column with a missing value.
         let whole = field.strip_suffix(".0").filter(|digits| digits.bytes().all(|digit| digit.is_ascii_digit()));
         label.push_str(whole.unwrap_or(&field));
     }
@@ -56,7 +56,7 @@ fn with_decimal_comma(field: &[u8]) -> Option<f64> {
     parsed(pointed)
 }
 
-/// What programs write where a number is missing (`NaN` itself is a number to the parser).
+/// Whether a field is a common marker for a missing number. (The parser reads `NaN` as a number.)
 fn is_missing(field: &[u8]) -> bool {
     const WORDS: [&[u8]; 8] = [b"", b"na", b"n/a", b"#n/a", b"null", b"none", b"nan", b"-"];
     WORDS.iter().any(|word| field.eq_ignore_ascii_case(word))

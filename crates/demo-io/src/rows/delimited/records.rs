@@ -8,13 +8,13 @@ use super::source::TextSource;
 use crate::rows::piece::Span;
 use crate::{Fault, ReadError};
 
-/// Records of equal length, with their lines.
+/// Records of equal length, with their line numbers.
 pub(super) struct Records<'a> {
     reader: csv::Reader<TextSource<'a>>,
-    /// 0 until it is known.
+    /// Number of fields; 0 until it is known.
     pub(super) fields: usize,
     file: String,
-    /// Lines before the reader's first.
+    /// Number of lines before the reader's first.
     lines_before: u64,
     /// Bytes read since the last record.
     since_record: Rc<Cell<usize>>,
@@ -26,14 +26,14 @@ impl<'a> Records<'a> {
         Self { reader: reader(source, dialect), fields: 0, file: file.to_owned(), lines_before: 0, since_record }
     }
 
-    /// Those of a part, of as many fields.
+    /// The records of a part, with the same number of fields.
     pub(super) fn within(self, part: &Span, dialect: &Dialect) -> Result<Self, ReadError> {
         let unreadable = |error| crate::input::unreadable(&error, &self.file);
         let source = self.reader.into_inner().within(&part.bytes).map_err(unreadable)?;
         Ok(Self { reader: reader(source, dialect), lines_before: part.line.saturating_sub(1), ..self })
     }
 
-    /// The byte of the file at which a record begins; none if it may not be read from there.
+    /// The byte of the file at which a record begins; `None` if reading cannot start there.
     pub(super) fn byte_of(&mut self, record: &ByteRecord) -> Option<u64> {
         self.reader.get_mut().byte_of(record.position()?.byte())
     }

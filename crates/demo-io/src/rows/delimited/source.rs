@@ -9,20 +9,21 @@ use super::dialect::Dialect;
 use crate::ReadError;
 use crate::input::Input;
 
-/// A record of more bytes is no row of numbers.
+/// Maximum number of bytes of a record; a longer one is no row of numbers.
 const LONGEST_RECORD: usize = 16 << 20;
 
-/// The file's text as the parser should see it: without byte order mark, runs of blanks as one, and no endless records.
+/// The file's text as the parser sees it: without byte order mark, with runs of blanks as one blank, and with a limit on the length of
+/// records.
 pub(super) struct TextSource<'a> {
     file: File,
     progress: &'a mut dyn FnMut(u64),
-    /// Bytes read since the last record: to be set to 0 with each.
+    /// Bytes read since the last record; the caller resets it to 0 with each record.
     pub(super) since_record: Rc<Cell<usize>>,
     skip: usize,
     /// Bytes of the file that may still be read.
     left: u64,
     blanks: Option<Squeeze>,
-    /// Bytes of a byte order mark.
+    /// Length of the byte order mark in bytes.
     mark: u64,
 }
 
@@ -45,7 +46,7 @@ impl<'a> TextSource<'a> {
         })
     }
 
-    /// These bytes of the file, which follow the end of a line.
+    /// Restricts the source to these bytes of the file, which follow the end of a line.
     pub(super) fn within(mut self, bytes: &Range<u64>) -> io::Result<Self> {
         self.file.seek(SeekFrom::Start(bytes.start))?;
         self.since_record.set(0);
@@ -53,8 +54,8 @@ impl<'a> TextSource<'a> {
         Ok(Self { skip: 0, left: bytes.end.saturating_sub(bytes.start), blanks, ..self })
     }
 
-    /// The byte of the file that the parser sees as this one, which begins a record; none if blanks between quotation marks stand around it.
-    /// To be asked in ascending order.
+    /// The file's byte for the parser's byte at which a record begins; `None` if that is not possible because of blanks between quotation
+    /// marks. Calls must be in ascending order.
     pub(super) fn byte_of(&mut self, parsed: u64) -> Option<u64> {
         match &mut self.blanks {
             Some(squeeze) if parsed > 0 => squeeze.byte_of(parsed),
@@ -66,7 +67,7 @@ impl<'a> TextSource<'a> {
 impl Read for TextSource<'_> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         loop {
-            // A blank may come out that was read before: one more byte than goes in.
+            // A blank read earlier may be written now: one more byte than was read.
             let start = usize::from(self.blanks.is_some());
             let read = (&mut self.file).take(self.left).read(&mut buffer[start..])?;
             self.left -= read as u64;
@@ -91,21 +92,21 @@ impl Read for TextSource<'_> {
     }
 }
 
-/// Runs of blanks and tabs become one blank, and none at the ends of lines.
+/// Reduces runs of blanks and tabs to one blank, and removes those at the ends of lines.
 #[derive(Default)]
 struct Squeeze {
     in_line: bool,
     pending: bool,
     quoted: bool,
-    /// Bytes of the file before what is squeezed next, and of what has been squeezed.
+    /// Bytes of the file before the next input; `written` is the number of bytes written so far.
     read: u64,
     written: u64,
-    /// Where lines ended outside quotation marks, as bytes squeezed and bytes of the file, if it is asked.
+    /// Ends of lines outside quotation marks, as bytes written and bytes of the file; `None` if they are not needed.
     ends: Option<VecDeque<(u64, u64)>>,
 }
 
 impl Squeeze {
-    /// Squeezes what stands at `range`, which begins at 1 at least, to the front.
+    /// Squeezes the text at `range`, which starts at 1 or later, to the front.
     fn squeeze(&mut self, text: &mut [u8], range: Range<usize>) -> usize {
         let (mut written, first) = (0, range.start);
         let after = range.end;
@@ -138,7 +139,7 @@ impl Squeeze {
         written
     }
 
-    /// The byte of the file behind the end of a line, by that of the squeezed text.
+    /// The byte of the file after the end of a line, from that of the squeezed text.
     fn byte_of(&mut self, squeezed: u64) -> Option<u64> {
         let ends = self.ends.as_mut()?;
         while ends.front().is_some_and(|end| end.0 < squeezed) {

@@ -8,7 +8,8 @@ use crate::raw::MOST_EPISODES;
 use crate::regular_file::FileState;
 use crate::rows::piece::{Cuts, Span, Start};
 
-/// Parts of whole lines, of at most so many bytes unless a line has more; none unless each line is an episode as [`crate::write`] makes it.
+/// Cuts into parts of whole lines, each of at most `most` bytes unless a line has more. Returns no part unless each line is an episode in
+/// [`crate::write`]'s form.
 pub(crate) fn cut(
     input: &Input<'_>,
     (most, of): (u64, FileState),
@@ -21,7 +22,7 @@ pub(crate) fn cut(
     }
     let mut file = BufReader::with_capacity(1 << 16, input.open()?);
     let (mut cuts, mut movements) = (Cuts::new(most, of), 0);
-    // Of the line that has begun.
+    // For the current line.
     let (mut start, mut line, mut byte, mut is_blank) = (0, 1, 0, true);
     loop {
         let read = file.fill_buf().map_err(|error| unreadable(&error, &input.name))?;

@@ -6,11 +6,11 @@ use crate::raw::RawRecordings;
 use crate::rows::json::Json;
 use crate::{Fault, ReadError};
 
-/// Objects of lists, an object a demonstration: `{"t": [0, 0.1], "pos": [[0, 1], [2, 3]]}`. Their names have the roles that they have
-/// in other files of arrays.
+/// Objects of lists, one object per demonstration: `{"t": [0, 0.1], "pos": [[0, 1], [2, 3]]}`. Names have the same roles as in other
+/// files of arrays.
 pub(super) struct EntryArrays<'a> {
     input: &'a Input<'a>,
-    /// What demonstrations are: "entry".
+    /// The word for a demonstration: "entry".
     word: &'static str,
     described: Vec<ArraySpec>,
     data: Vec<Data>,
@@ -31,7 +31,7 @@ impl<'a> EntryArrays<'a> {
         Ok(())
     }
 
-    /// What an object holds; of objects within it by their path: `obs/q`.
+    /// Adds the contents of an object; those of objects within it by their path: `obs/q`.
     fn add(
         &mut self,
         path: &str,
@@ -69,7 +69,7 @@ impl<'a> EntryArrays<'a> {
     }
 }
 
-/// Shape and content of nested lists; none if they are not of one shape and of one kind.
+/// Shape and contents of nested lists; `None` if they differ in shape or kind.
 fn array(value: &Json) -> Option<(Vec<usize>, Data)> {
     let mut shape = Vec::new();
     let mut first = value;

@@ -11,19 +11,20 @@ use crate::rows::stamps::Stamp;
 use crate::{Fault, ReadError, ReadOptions};
 use motion::{Channel, Labels};
 
-/// Episodes, a line each: `{"episode": "take 1", "dt": 0.05, "names": ["x"], "unit": ["m"], "state": [[0.1], [0.2]],
-/// "velocity": [[2.0], [2.0]], "constraint": "rail"}`, or `times` instead of `dt`, or a list with the constraint of each sample.
+/// Episodes, one per line: `{"episode": "take 1", "dt": 0.05, "names": ["x"], "unit": ["m"], "state": [[0.1], [0.2]],
+/// "velocity": [[2.0], [2.0]], "constraint": "rail"}`. `times` may replace `dt`, and a list may give the constraint of each
+/// sample.
 pub(super) struct EpisodeLines<'a> {
     input: &'a Input<'a>,
-    /// What episodes are: "line".
+    /// The word for an episode: "line".
     word: &'static str,
     channels: Option<Vec<Channel>>,
-    /// Before the first of `episodes`.
+    /// Number of episodes before the first of `episodes`.
     before: usize,
     episodes: Vec<RawEpisode>,
 }
 
-/// The value of the first key that is there.
+/// The value of the first existing key.
 fn one_of<'a>(line: &'a Json, keys: &[&str]) -> Option<&'a Json> {
     keys.iter().find_map(|key| line.get(key)).filter(|value| **value != Json::Null)
 }
@@ -39,7 +40,7 @@ impl<'a> EpisodeLines<'a> {
         Self { input, word, channels: None, before: 0, episodes: Vec::new() }
     }
 
-    /// Forgets all episodes, and goes on with those that follow so many; channels stay those of the first.
+    /// Forgets all episodes and continues after the first `before` episodes; the channels stay those of the first.
     pub(super) fn forget(&mut self, before: usize) {
         self.episodes.clear();
         self.before = before;
@@ -108,7 +109,7 @@ impl<'a> EpisodeLines<'a> {
         }
     }
 
-    /// The channels that the user chooses, of all.
+    /// Selects the user's channels.
     pub(super) fn finish(self) -> Result<RawRecordings, ReadError> {
         let ReadOptions { state, velocity, context, ignore, .. } = self.input.options.clone();
         let (channels, mut episodes) = (self.channels.unwrap_or_default(), self.episodes);
@@ -141,7 +142,7 @@ impl<'a> EpisodeLines<'a> {
     }
 }
 
-/// Names of constraints: one for the line, or one a sample.
+/// Names of constraints: one for the line, or one for each sample.
 fn constraints(line: &Json, samples: usize, place: &str) -> Result<Option<Labels>, ReadError> {
     match one_of(line, &["constraint", "condition"]) {
         Some(Json::List(names)) if names.len() != samples => Err(lengths("'constraint'", samples, names.len(), place)),
@@ -155,7 +156,7 @@ fn stamps(line: &Json) -> Option<(&str, &[Json])> {
     ["times", "t", "time", "timestamps", "timestamp"].into_iter().find_map(|key| Some((key, line.get(key)?.list()?)))
 }
 
-/// All samples one after another.
+/// All samples, one after another.
 fn numbers(samples: &[Json], n: usize, key: &str, place: &str) -> Result<Vec<f64>, ReadError> {
     let mut numbers = Vec::with_capacity(samples.len() * n);
     for (at, sample) in samples.iter().enumerate() {

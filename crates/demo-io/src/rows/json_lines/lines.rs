@@ -6,14 +6,14 @@ use crate::rows::json::Json;
 use crate::rows::piece::Span;
 use crate::{Fault, ReadError};
 
-/// A line of more bytes is not read.
+/// Maximum number of bytes of a line.
 const LONGEST_LINE: u64 = 1 << 30;
 
 /// The documents of a file.
 pub(super) struct Lines {
     file: BufReader<Take<File>>,
     name: String,
-    /// The last one's line, counted from 1.
+    /// Line of the last document, counted from 1.
     pub(super) line: u64,
     text: Vec<u8>,
 }
@@ -24,7 +24,7 @@ impl Lines {
         Ok(Self { file, name: input.name.clone(), line: 0, text: Vec::new() })
     }
 
-    /// Those of a part.
+    /// The lines of a part.
     pub(super) fn within(input: &Input<'_>, part: &Span) -> Result<Self, ReadError> {
         let mut lines = Self::new(input)?;
         lines.file.seek(SeekFrom::Start(part.bytes.start)).map_err(|error| unreadable(&error, &input.name))?;
@@ -33,7 +33,7 @@ impl Lines {
         Ok(lines)
     }
 
-    /// The next line that is not blank; the `first` document may take all lines.
+    /// Reads the next line that is not blank; the `first` document may extend over all lines.
     pub(super) fn next(&mut self, first: bool, progress: &mut dyn FnMut(u64)) -> Result<Option<Json>, ReadError> {
         loop {
             let file = &self.name;

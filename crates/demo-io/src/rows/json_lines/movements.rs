@@ -1,25 +1,25 @@
-//! Movements within JSON documents that are neither a sample nor an episode in our own form: objects of lists, alone, one a line, in a
-//! list, or within one object of all.
+//! Movements within JSON documents that are neither a sample nor an episode in our own form: objects of lists, alone, one per line, in a
+//! list, or within one enclosing object.
 
 use crate::rows::json::Json;
 use crate::rows::json_lines::episode_line;
 use crate::rows::roles::is_time;
 
-/// What an object holds.
+/// Contents of an object.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Form {
-    /// An episode as [`crate::write`] makes it.
+    /// An episode in [`crate::write`]'s form.
     Episode,
-    /// Lists of samples, by name: `{"t": [0, 0.1], "pos": [[0, 1], [2, 3]]}`.
+    /// Named lists of samples: `{"t": [0, 0.1], "pos": [[0, 1], [2, 3]]}`.
     Arrays,
-    /// Lists of numbers, by name: `{"t": [0, 0.1], "x": [0, 2], "y": [1, 3]}`.
+    /// Named lists of numbers: `{"t": [0, 0.1], "x": [0, 2], "y": [1, 3]}`.
     Columns,
-    /// Anything else, as one sample.
+    /// Anything else; it is one sample.
     Other,
 }
 
 impl Form {
-    /// Of an object that is `alone` in its file, or one of many. One sample alone is no recording.
+    /// The form of an object that is `alone` in its file, or one of many. A single sample is no recording.
     pub(super) fn of(entry: &Json, alone: bool) -> Self {
         let Json::Map(values) = entry else { return Form::Other };
         if episode_line::state(entry).is_some() {
@@ -37,8 +37,8 @@ impl Form {
         if of_columns { Form::Columns } else { Form::Other }
     }
 
-    /// Whether lists without stamps are columns, not the numbers of one sample: all are as long as each other, and long. A sample says when
-    /// it was taken.
+    /// Whether lists without stamps are columns rather than the numbers of one sample: all have the same length, at least [`LONG`], and
+    /// there is no time. A sample states its time.
     fn is_long(values: &[(String, Json)]) -> bool {
         let mut lengths = values.iter().filter(|(_, value)| depth(value) == 1).filter_map(|(_, value)| value.list());
         let Some(first) = lengths.next().map(<[Json]>::len) else { return false };
@@ -50,12 +50,12 @@ impl Form {
     }
 }
 
-/// Lists of so many numbers are longer than most states.
+/// Lists with at least this many numbers are longer than most states.
 const LONG: usize = 32;
-/// What a time step is called.
+/// Names of a time step.
 const STEPS: [&str; 2] = ["dt", "time_step"];
 
-/// How deep lists nest, by the first of each; 0 of what is no list, or an empty one.
+/// The nesting depth of lists, by the first element of each; 0 for a value that is no list, or an empty one.
 fn depth(value: &Json) -> usize {
     match value.list() {
         Some([first, ..]) if !matches!(first, Json::Map(_)) => 1 + depth(first),
@@ -63,8 +63,8 @@ fn depth(value: &Json) -> usize {
     }
 }
 
-/// The movements in one object of all: a list of objects or of lists of samples, or objects by name, each with what stands beside them
-/// (`dt`, `names`); none if there are none.
+/// The movements within one enclosing object: a list of objects or of lists of samples, or named objects. Each movement also gets the
+/// values beside them (`dt`, `names`). `None` if there are no movements.
 pub(super) fn within(document: &Json) -> Option<Vec<Json>> {
     let Json::Map(values) = document else { return None };
     if Form::of(document, true) == Form::Episode {
@@ -99,7 +99,7 @@ pub(super) fn within(document: &Json) -> Option<Vec<Json>> {
     Some((0..first.len()).map(movement).collect())
 }
 
-/// An entry with what it shares with others, and its name, unless it says so itself.
+/// Adds the shared values and the name to an entry, except for keys that it has itself.
 fn joined(entry: Json, name: Option<&str>, shared: &[(String, Json)]) -> Json {
     let Json::Map(mut own) = entry else { return entry };
     let name = name.map(|name| ("episode".to_owned(), Json::Text(name.to_owned())));
@@ -111,8 +111,8 @@ fn joined(entry: Json, name: Option<&str>, shared: &[(String, Json)]) -> Json {
     Json::Map(own)
 }
 
-/// The samples of an object of lists, as objects, each with what is no list: `{"t": 0, "x": 0}`. Lists of another length than the
-/// longest are left out. A time step becomes stamps where there are none.
+/// The samples of an object of lists, as objects that also hold its other values: `{"t": 0, "x": 0}`. Lists shorter than the longest are
+/// dropped. If there are no stamps, a time step provides them.
 pub(super) fn rows_of_columns(entry: &Json, episode: Option<&str>) -> Vec<Json> {
     let Json::Map(values) = entry else { return Vec::new() };
     let length = values.iter().filter_map(|(_, value)| value.list()).map(<[Json]>::len).max().unwrap_or(0);
@@ -161,7 +161,7 @@ mod tests {
         }
     }
 
-    /// Lists of one length that no sample has are the columns of a movement, unless a stamp says when the sample was taken.
+    /// Lists of one length, too long for a sample, are the columns of a movement, unless a stamp gives the time of the sample.
     #[test]
     fn long_lists_without_stamps_are_columns() {
         let list = |length: usize| format!("[{}]", vec!["0"; length].join(","));

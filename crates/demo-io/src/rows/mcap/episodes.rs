@@ -1,11 +1,11 @@
-//! Episodes of a bag, which its metadata list.
+//! Episodes of a bag, from its metadata.
 
 use std::collections::BTreeMap;
 
 use crate::label_entry::LabelEntry;
 use crate::raw::RawEpisode;
 
-/// The episodes that [`crate::write`] listed in the metadata; otherwise all messages are one.
+/// The episodes that [`crate::write`] listed in the metadata; without them, all messages are one episode.
 pub(super) fn episodes(draft: RawEpisode, metadata: &BTreeMap<String, String>) -> Vec<RawEpisode> {
     let listed = metadata.get("episodes").and_then(|text| serde_json::from_str::<Vec<EpisodeEntry>>(text).ok());
     let listed = listed.unwrap_or_default();
@@ -23,7 +23,7 @@ pub(super) fn episodes(draft: RawEpisode, metadata: &BTreeMap<String, String>) -
     cut.collect()
 }
 
-/// An episode in the metadata.
+/// The metadata of an episode.
 #[derive(Debug, serde::Serialize, serde::Deserialize)]
 pub(crate) struct EpisodeEntry {
     pub(crate) name: String,

@@ -1,4 +1,4 @@
-//! The container itself (mcap.dev/spec): what its reader and its writer both know.
+//! Constants of the container format (mcap.dev/spec), shared by its reader and its writer.
 
 /// First and last bytes of a bag.
 pub(crate) const MAGIC: [u8; 8] = *b"\x89MCAP0\r\n";

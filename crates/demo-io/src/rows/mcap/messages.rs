@@ -10,12 +10,12 @@ pub(super) enum Type {
     Json,
 }
 
-/// What a message says.
+/// Contents of a message.
 #[derive(Debug, PartialEq)]
 pub(super) struct Message<'a> {
     /// Nanoseconds since 1970, from the header.
     pub(super) stamp: Option<i64>,
-    /// Empty where the type gives the names.
+    /// Empty if the message type determines the names.
     pub(super) names: Vec<&'a str>,
     pub(super) positions: Vec<f64>,
     pub(super) velocities: Vec<f64>,
@@ -26,7 +26,7 @@ const POSE: [&str; 7] =
 const TWIST: [&str; 6] = ["linear.x", "linear.y", "linear.z", "angular.x", "angular.y", "angular.z"];
 
 impl Type {
-    /// From the name of the schema, of ROS 1 or 2, and the encoding.
+    /// Determines the type from the name of the schema, of ROS 1 or 2, and the encoding.
     pub(super) fn of(schema: &str, encoding: &str) -> Option<Self> {
         if encoding == "json" {
             return Some(Type::Json);

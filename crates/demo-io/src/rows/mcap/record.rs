@@ -3,7 +3,7 @@ use std::collections::BTreeMap;
 use super::format::opcode;
 use crate::rows::packed::{Misfit, Reader};
 
-/// What of a bag is of use here.
+/// The records of a bag that are read.
 #[derive(Debug, PartialEq)]
 pub(super) enum Record<'a> {
     Schema {
@@ -34,7 +34,7 @@ impl<'a> Record<'a> {
         matches!(kind, opcode::SCHEMA | opcode::CHANNEL | opcode::MESSAGE | opcode::METADATA)
     }
 
-    /// The record of a kind that is read.
+    /// Parses a record of a kind that is read.
     pub(super) fn parse(kind: u8, content: &'a [u8]) -> Result<Self, Misfit> {
         let mut fields = Reader::of_record(content);
         Ok(match kind {

@@ -9,10 +9,11 @@ use crate::input::{Input, unreadable};
 use crate::rows::packed::{self, Misfit};
 use crate::{Fault, ReadError};
 
-/// Calls `visit` with the records of a bag, in the order of the file and without its index. False if the bag ends in the middle
-/// of a record.
+/// Calls `visit` with the records of a bag in the order of the file, without using its index. Returns false if the bag ends in
+/// the middle of a record.
 ///
-/// Records are unpacked one after another, so that a bag need not fit into memory and what a killed recorder left can be read.
+/// Records are decompressed one after another, so that a bag need not fit into memory, and the file of a killed recorder can be
+/// read.
 pub(super) fn each(
     input: &Input<'_>,
     progress: &mut dyn FnMut(u64),
@@ -24,7 +25,7 @@ pub(super) fn each(
         Ok(()) => Ok(true),
         Err(Stop::Refused(error)) => Err(error),
         Err(Stop::Bytes(error)) if error.raw_os_error().is_some() => Err(unreadable(&error, &input.name)),
-        // What is missing would be behind the end of the file.
+        // The missing bytes would be behind the end of the file.
         Err(Stop::Bytes(_)) if file.ended => Ok(false),
         Err(stop) => {
             let remedy = "another copy of the file, or mcap recover FILE";
@@ -33,10 +34,10 @@ pub(super) fn each(
     }
 }
 
-/// Why reading ends early.
+/// The reason why reading ends early.
 #[derive(Debug, Error)]
 enum Stop {
-    /// Bytes that cannot be had, from the file or unpacked.
+    /// Bytes that cannot be read from the file or decompressed.
     #[error("what was packed cannot be unpacked ({0})")]
     Bytes(#[from] io::Error),
     #[error("{0}")]
@@ -50,7 +51,7 @@ enum Stop {
 struct Reader<'a, 'v> {
     input: &'a Input<'a>,
     visit: &'v mut dyn FnMut(Record<'_>) -> Result<(), ReadError>,
-    /// Content of a record.
+    /// Contents of a record.
     buffer: Vec<u8>,
 }
 
@@ -75,7 +76,7 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// A record outside of chunks or in one.
+    /// Handles a record outside or inside a chunk.
     fn record(&mut self, kind: u8, length: u64, source: &mut impl Read) -> Result<(), Stop> {
         if kind == 0 {
             return Err(Stop::Damaged("there is a record of kind 0".to_owned()));
@@ -130,7 +131,8 @@ impl Reader<'_, '_> {
         Ok(skip(&mut packed, behind)?)
     }
 
-    /// As the power of two. A packed chunk may ask for so much memory before its first byte comes.
+    /// Largest window of a compressed chunk, as a power of two. A chunk may request this much memory before its first byte is
+    /// decompressed.
     fn largest_window(&self) -> u32 {
         if self.input.len < 1 << 20 { 26 } else { 27 }
     }
@@ -142,7 +144,7 @@ fn magic(file: &mut impl Read, which: &str) -> Result<(), Stop> {
     if found == MAGIC { Ok(()) } else { Err(Stop::Damaged(format!("it does not {which} as bags do"))) }
 }
 
-/// A sum of 0 was not computed.
+/// Compares checksums. A stated sum of 0 means that none was computed.
 fn agree(stated: u32, sum: u32, what: &str) -> Result<(), Stop> {
     if stated == 0 || stated == sum {
         Ok(())

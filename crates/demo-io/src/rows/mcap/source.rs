@@ -2,14 +2,14 @@ use std::io::{self, BufReader, Read};
 
 use crc32fast::Hasher;
 
-/// Read at once.
+/// Number of bytes to read at once.
 const BLOCK: usize = 256 << 10;
 
-/// A reader that computes the check sum of its bytes and records whether they ended.
+/// A reader that computes the checksum of its bytes and records whether they ended.
 pub(super) struct ChecksumReader<R> {
     inner: R,
     sum: Hasher,
-    /// Whether more was wanted than there is.
+    /// Whether a read went beyond the end.
     pub(super) ended: bool,
 }
 
@@ -18,7 +18,7 @@ impl<R: Read> ChecksumReader<R> {
         Self { inner, sum: Hasher::new(), ended: false }
     }
 
-    /// CRC-32 of all that was read.
+    /// CRC-32 of all bytes read so far.
     pub(super) fn sum(&self) -> u32 {
         self.sum.clone().finalize()
     }
@@ -33,7 +33,7 @@ impl<R: Read> Read for ChecksumReader<R> {
     }
 }
 
-/// A reader that reports how many bytes it read.
+/// A reader that reports the number of bytes it has read.
 pub(super) struct ProgressReader<'a, R> {
     inner: R,
     progress: &'a mut dyn FnMut(u64),
@@ -53,7 +53,7 @@ impl<R: Read> Read for ProgressReader<'_, R> {
     }
 }
 
-/// Kind and length of the next record; none where the source ends.
+/// Kind and length of the next record; `None` at the end of the source.
 pub(super) fn head(source: &mut impl Read) -> io::Result<Option<(u8, u64)>> {
     let mut kind = [0];
     if source.read(&mut kind)? == 0 {
@@ -64,7 +64,7 @@ pub(super) fn head(source: &mut impl Read) -> io::Result<Option<(u8, u64)>> {
     Ok(Some((kind[0], u64::from_le_bytes(length))))
 }
 
-/// The content of a record. It allocates only for bytes that are there, not for all of `length`.
+/// The contents of a record. Allocates only for bytes that exist, not for all of `length`.
 pub(super) fn content<'b>(source: &mut impl Read, length: u64, buffer: &'b mut Vec<u8>) -> io::Result<&'b [u8]> {
     buffer.clear();
     while (buffer.len() as u64) < length {
@@ -77,7 +77,7 @@ pub(super) fn content<'b>(source: &mut impl Read, length: u64, buffer: &'b mut V
     Ok(buffer)
 }
 
-/// Passes so many bytes over.
+/// Skips `length` bytes.
 pub(super) fn skip(source: &mut impl Read, length: u64) -> io::Result<()> {
     let passed = io::copy(&mut source.take(length), &mut io::sink())?;
     if passed == length { Ok(()) } else { Err(io::ErrorKind::UnexpectedEof.into()) }

@@ -17,18 +17,18 @@ use crate::rows::stamps::{Stamp, TicksPerSecond};
 use crate::{Fault, ReadError};
 use motion::{Channel, Finding};
 
-/// The messages of a topic. What is wrong with them matters only if the topic is chosen.
+/// The messages of a topic. Faults in them matter only if the topic is selected.
 pub(super) struct Topic<'a> {
     input: &'a Input<'a>,
     pub(super) name: String,
     pub(super) schema: String,
-    /// None if it is not read.
+    /// `None` if the type is not supported.
     pub(super) kind: Option<Type>,
-    /// Messages by the set of their names, since several programs publish on one topic.
+    /// Messages grouped by their set of names, because several programs may publish on one topic.
     sets: Vec<Set>,
     by_names: HashMap<Vec<String>, usize>,
     documents: Option<Documents<'a>>,
-    /// How many there are.
+    /// Number of messages.
     pub(super) messages: u64,
     fault: Option<ReadError>,
 }
@@ -40,16 +40,16 @@ struct Set {
     names: Vec<String>,
     /// Whether other messages have another order.
     reordered: bool,
-    /// Which message of the topic.
+    /// The number of each message within the topic.
     numbers: Vec<u64>,
     stamps: Vec<i64>,
     log_times: Vec<i64>,
     positions: Vec<f64>,
-    /// Shorter than positions if some message has none.
+    /// Shorter than positions if some message has no velocities.
     velocities: Vec<f64>,
 }
 
-/// A topic has hardly more publishers than that.
+/// Maximum number of sets of names; a topic hardly has more publishers.
 const MOST_SETS: usize = 64;
 
 impl<'a> Topic<'a> {
@@ -102,7 +102,7 @@ impl<'a> Topic<'a> {
             ReadError::Json(Fault::new(what, self.place(number), "another topic: --topic"))
         })?;
         if let Json::Map(values) = &mut document {
-            // Behind all others, so that a stamp inside the message is found first.
+            // Appended last, so that a stamp inside the message takes precedence.
             values.push(("log_time".to_owned(), Json::Whole(log_time)));
         }
         match &mut self.documents {
@@ -221,10 +221,10 @@ impl<'a> Topic<'a> {
         Ok(RawRecordings { channels, episodes, findings, word: "message", drop_constant: false, unknown, context })
     }
 
-    /// The set of messages to take, and which of its names are the state.
+    /// The set of messages to use, and the names of it that form the state.
     fn chosen(&self) -> Result<(usize, Vec<usize>), ReadError> {
         let options = self.input.options;
-        // The first of several.
+        // The first of equally large sets.
         let largest_of = |fits: &dyn Fn(&usize) -> bool| {
             (0..self.sets.len()).filter(fits).max_by_key(|&at| (self.sets[at].numbers.len(), Reverse(at)))
         };
@@ -242,7 +242,7 @@ impl<'a> Topic<'a> {
         let fits = |at: &usize| select(&options.state, &self.sets[*at].names).is_ok();
         let at = largest_of(&fits).unwrap_or(largest);
         let place = format!("{}, topic {}", self.input.name, self.name);
-        // A glob names no order.
+        // A glob does not specify an order.
         let any = options.state.iter().any(|pattern| pattern.contains('*'));
         let ordered = |columns| if any { self.sets[at].in_order(columns) } else { columns };
         Ok((at, ordered(named(&options.state, &self.sets[at].names, &place)?)))
@@ -262,13 +262,13 @@ impl<'a> Topic<'a> {
     }
 }
 
-/// A word of `--ignore` for the velocities of all messages.
+/// Whether a pattern of `--ignore` refers to the velocities of all messages.
 fn is_velocity(pattern: &str) -> bool {
     matches!(pattern, "velocity" | "velocities" | "*vel*")
 }
 
 impl Set {
-    /// In the natural order of names where messages have no order of their own.
+    /// Sorts columns in the natural order of their names if the order differs between messages.
     fn in_order(&self, mut columns: Vec<usize>) -> Vec<usize> {
         if self.reordered {
             columns.sort_by(|&a, &b| natural::compare(&self.names[a], &self.names[b]));

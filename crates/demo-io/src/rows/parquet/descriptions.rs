@@ -1,8 +1,8 @@
-//! Checks a file's descriptions of itself before the library reads them. The library takes a field for what the format says
-//! even where the file says otherwise, and counts through a list of two thousand million truth values though the file has no
-//! byte for them.
+//! Checks a file's metadata before the library reads it. The library reads a field as the type that the format prescribes
+//! even if the file states another, and iterates over a list of two thousand million booleans though the file has no byte
+//! for them.
 //!
-//! Descriptions are in Thrift's compact protocol: fields of a kind each, up to a kind 0.
+//! The metadata use Thrift's compact protocol: fields, each with a kind, up to a kind 0.
 
 use parquet::file::metadata::ColumnChunkMetaData;
 
@@ -11,24 +11,24 @@ use super::fields::{FILE, Fields, Holds, PAGE};
 use crate::ReadError;
 use crate::input::Input;
 
-/// Bytes at the end: length of the closing description, and the mark.
+/// Bytes at the end of the file: the length of the footer metadata, and the magic number.
 const END: u64 = 8;
-/// Room for a page's description; what is longer is left to the library.
+/// Maximum size of a page header; longer ones are left to the library.
 const ROOM: u64 = 64 << 10;
-/// Descriptions in descriptions; the library follows as many.
+/// Maximum nesting depth; the library follows as many levels.
 const DEPTH: usize = 64;
 
-/// Why a description cannot be followed further.
+/// The reason why parsing stops.
 enum Stop {
-    /// It ends, or is none: the library says what is wrong with it.
+    /// The description ends or is invalid; the library reports the error.
     Unreadable,
     /// A list has more elements than there are bytes.
     Overlong,
-    /// A field holds something else than the format says.
+    /// A field has a type other than the format prescribes.
     Other,
 }
 
-/// Refuses a closing description that the library would misread.
+/// Refuses footer metadata that the library would misread.
 pub(super) fn check_end(input: &Input<'_>) -> Result<(), ReadError> {
     let Some(start) = input.len.checked_sub(END) else { return Ok(()) };
     let mut file = input.open()?;
@@ -39,8 +39,8 @@ pub(super) fn check_end(input: &Input<'_>) -> Result<(), ReadError> {
     refuse(&Description { left: &text, sizes: [None; 3] }.structure(FILE, DEPTH), input).map(|_| ())
 }
 
-/// The same of the pages of a column in a group of rows. At the end of the file the library does not notice that bytes which
-/// it skips are not there, and goes on skipping.
+/// The same for the pages of a column in a row group. At the end of the file the library does not notice that skipped bytes
+/// do not exist, and continues to skip.
 pub(super) fn check_pages(chunk: &ColumnChunkMetaData, input: &Input<'_>) -> Result<(), ReadError> {
     let mut file = input.open()?;
     let (mut at, size) = chunk.byte_range();
@@ -64,7 +64,7 @@ pub(super) fn check_pages(chunk: &ColumnChunkMetaData, input: &Input<'_>) -> Res
     Ok(())
 }
 
-/// Whether a description was followed to its end.
+/// Whether a description was parsed to its end.
 fn refuse(outcome: &Result<(), Stop>, input: &Input<'_>) -> Result<bool, ReadError> {
     match outcome {
         Ok(()) => Ok(true),
@@ -98,7 +98,7 @@ impl Holds {
 
 struct Description<'a> {
     left: &'a [u8],
-    /// In the order of `Size`.
+    /// Indexed by `Size`.
     sizes: [Option<u64>; 3],
 }
 
@@ -112,7 +112,7 @@ impl Description<'_> {
             if kind == 0 {
                 return Ok(());
             }
-            // As the library counts: a number of its own is cut to two bytes.
+            // As in the library: an explicit number is truncated to two bytes.
             number = match i16::from(head >> 4) {
                 0 => zigzag(self.integer()?) as i16,
                 step => number.checked_add(step).ok_or(Stop::Unreadable)?,
@@ -125,7 +125,7 @@ impl Description<'_> {
         }
     }
 
-    /// What stands after the kind; of truth values nothing, as they are their kind.
+    /// Skips the value that follows the kind. A boolean has none, because its kind is its value.
     fn value(&mut self, kind: u8, holds: Option<&Holds>, depth: usize) -> Result<(), Stop> {
         match kind {
             1 | 2 => Ok(()),
@@ -164,7 +164,7 @@ impl Description<'_> {
         }
     }
 
-    /// Of a list, or of a map keys and values in turn.
+    /// Skips the elements of a list, or the alternating keys and values of a map.
     fn elements(&mut self, length: u64, kinds: &[(u8, Option<&Holds>)], depth: usize) -> Result<(), Stop> {
         let depth = depth.checked_sub(1).ok_or(Stop::Unreadable)?;
         if length > self.left.len() as u64 {
@@ -193,7 +193,7 @@ impl Description<'_> {
         Ok(())
     }
 
-    /// Seven bits a byte, the last one below 128.
+    /// Reads an integer with seven bits per byte; its last byte is below 128.
     fn integer(&mut self) -> Result<u64, Stop> {
         let mut integer = 0;
         for shift in (0..64).step_by(7) {

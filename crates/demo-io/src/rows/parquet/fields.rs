@@ -1,17 +1,17 @@
-//! What the fields of a Parquet file's descriptions hold, in the order of their numbers, which count from 1 (parquet.thrift of
-//! the format, version 2.12).
+//! Types of the fields in a Parquet file's metadata, in the order of their numbers, which count from 1 (parquet.thrift of the
+//! format, version 2.12).
 
 use self::Holds::{Any, Byte, Bytes, Double, Integer, List, Truth};
 
-/// What a field holds.
+/// Type of a field.
 pub(super) enum Holds {
     /// The number is not used.
     Any,
     Truth,
     Byte,
-    /// Of two, four or eight bytes: they are written alike.
+    /// An integer of two, four or eight bytes; all have the same encoding.
     Integer,
-    /// An integer that is remembered.
+    /// An integer whose value is kept.
     Size(Size),
     Double,
     Bytes,
@@ -22,15 +22,15 @@ pub(super) enum Holds {
 /// Sizes of a page.
 #[derive(Clone, Copy)]
 pub(super) enum Size {
-    /// Bytes when decompressed.
+    /// Uncompressed size in bytes.
     Whole,
-    /// Bytes after the description.
+    /// Size in bytes after the header.
     InFile,
-    /// Values of a dictionary.
+    /// Number of values of a dictionary.
     Values,
 }
 
-/// Fields of a structure. What is not listed is skipped by every reader.
+/// Fields of a structure. Every reader skips fields that are not listed.
 pub(super) type Fields = [Holds];
 
 /// `FileMetaData`
@@ -82,10 +82,10 @@ const LOGICAL_TYPE: &Fields = &[
     Holds::Fields(&[Bytes, Integer]),
 ];
 
-/// A structure without fields that matter here.
+/// A structure without relevant fields.
 const EMPTY: Holds = Holds::Fields(&[]);
 
-/// One of several, each without fields that matter here: orders of columns, units of time, encryptions.
+/// A union of structures without relevant fields: column orders, time units, encryptions.
 const UNION: Holds = Holds::Fields(&[EMPTY, EMPTY, EMPTY]);
 
 const ROW_GROUP: &Fields = &[

@@ -14,13 +14,13 @@ use crate::raw::MOST_CHANNELS;
 use crate::rows::stamps::{Stamp, TicksPerSecond};
 use crate::{Fault, ReadError};
 
-/// A column of values in the file: one a row, or lists of equal length.
+/// A column of values in the file: one per row, or lists of equal length.
 #[derive(Debug)]
 #[allow(clippy::struct_excessive_bools, reason = "facts of a schema that have nothing to do with each other")]
 pub(super) struct Leaf {
     pub(super) name: String,
     index: usize,
-    /// Values a row.
+    /// Number of values per row.
     pub(super) width: usize,
     pub(super) list: bool,
     pub(super) text: bool,
@@ -28,11 +28,11 @@ pub(super) struct Leaf {
     most_defined: i16,
     ticks: Option<TicksPerSecond>,
     half: bool,
-    /// Bytes of a floating-point value.
+    /// Size of a floating-point value in bytes.
     float: Option<usize>,
 }
 
-/// Values of a row group, `width` a row.
+/// Values of a row group, `width` per row.
 #[derive(Debug)]
 pub(super) struct Values {
     data: Data,
@@ -40,12 +40,12 @@ pub(super) struct Values {
 }
 
 impl Leaf {
-    /// The leaves of the schema that can be read; lists get their width from the first row.
+    /// The readable leaves of the schema. The width of a list is that of the first row.
     pub(super) fn all(file: &dyn FileReader, input: &Input<'_>) -> Result<Vec<Self>, ReadError> {
         let schema = file.metadata().file_metadata().schema_descr_ptr();
         let mut leaves = Vec::new();
         for (index, column) in schema.columns().iter().enumerate() {
-            // Pictures and other lists of lists are no states.
+            // Images and other nested lists are no states.
             if column.max_rep_level() > 1 {
                 continue;
             }
@@ -64,7 +64,7 @@ impl Leaf {
     fn new(index: usize, column: &ColumnDescriptor) -> Self {
         let list = column.max_rep_level() == 1;
         let parts = column.path().parts();
-        // A list's path ends in what its writer calls elements: list.element, bag.array_element, item.
+        // The path of a list ends with its writer's name for elements: list.element, bag.array_element, item.
         let name = if list { parts.first().cloned().unwrap_or_default() } else { parts.join(".") };
         let logical = column.logical_type_ref();
         let half = matches!(logical, Some(LogicalType::Float16));
@@ -115,8 +115,8 @@ impl Leaf {
         Ok(Values { data, ticks: self.ticks })
     }
 
-    /// Pages seldom carry check sums, but a dictionary holds each value once: where one stands twice, bytes were
-    /// overwritten, and samples would silently be wrong.
+    /// Refuses a dictionary with a repeated value. Pages seldom have checksums, but a dictionary holds each value once,
+    /// so a repeated value means that bytes were overwritten. Otherwise samples would be wrong without notice.
     fn refuse_damaged_dictionary(&self, group: &dyn RowGroupReader, input: &Input<'_>) -> Result<(), ReadError> {
         let Some(size) = self.float else { return Ok(()) };
         let failed = |error| failed(&error, input);
@@ -132,7 +132,7 @@ impl Leaf {
         Ok(())
     }
 
-    /// Values of the first `rows` rows, and where in them each row begins; the last number is how many there are.
+    /// Values of the first `rows` rows, and the index at which each row begins; the last index is the number of values.
     fn entries(
         &self,
         group: &dyn RowGroupReader,
@@ -172,7 +172,7 @@ impl Leaf {
         read.map_err(|error| failed(&error, input))
     }
 
-    /// Values with what is missing put in; reading stops at the first error or when nothing more comes.
+    /// Values with missing ones filled in; reading stops at the first error or at the end.
     fn filled<T: DataType, V: Clone>(
         &self,
         mut reader: ColumnReaderImpl<T>,
@@ -214,10 +214,10 @@ impl Leaf {
     }
 }
 
-/// Records at once.
+/// Number of records to read at once.
 const BATCH: usize = 4096;
 
-/// Whole numbers; with one missing they become f64, which knows NaN.
+/// Integers; if one is missing, they become f64, which has NaN.
 fn whole(values: Vec<Option<i64>>) -> Data {
     match values.iter().copied().collect::<Option<Vec<i64>>>() {
         Some(values) => Data::Whole(values),

@@ -1,20 +1,20 @@
-/// What the first rows of a column hold.
+/// Contents of the first rows of a column.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Content {
-    /// Whole numbers, each one more than the last, or starting again.
+    /// Integers, each the previous one plus 1, or restarting.
     Counting,
-    /// Numbers, or nothing.
+    /// Numbers, or missing values.
     Numbers,
-    /// Words that begin with a letter, throughout.
+    /// Only words that begin with a letter.
     Words,
     /// Anything else.
     Text,
 }
 
-/// Columns are judged by so many rows.
+/// Number of rows by which columns are judged.
 pub(crate) const HEAD_ROWS: usize = 64;
 
-/// What a column holds, judged by its numbers in the first rows.
+/// Determines the contents of a column from its numbers in the first rows.
 pub(crate) fn content(numbers: impl Iterator<Item = Result<f64, String>>) -> Content {
     let mut last: Option<f64> = None;
     let (mut counting, mut words, mut rows) = (true, 0, 0);

@@ -1,4 +1,4 @@
-//! What a column's name says: whether it is a time, its unit, and the names that its velocity may have.
+//! Interprets a column's name: whether it is a time, its unit, and possible names of its velocity.
 
 const TIMES: [&str; 14] = [
     "t",
@@ -33,7 +33,7 @@ pub(crate) fn is_time(name: &str) -> bool {
         || name.rsplit_once('_').is_some_and(|(stem, unit)| TIMES.contains(&stem) && TIME_UNITS.contains(&unit))
 }
 
-/// Names that the column of nanoseconds beside one of whole seconds may have: `stamp.nsecs` beside `stamp.secs`.
+/// Possible names for the column of nanoseconds beside one of whole seconds: `stamp.nsecs` beside `stamp.secs`.
 pub(super) fn nanoseconds_of(seconds: &str) -> Vec<String> {
     let name = base(seconds);
     let [secs, sec] =
@@ -44,7 +44,7 @@ pub(super) fn nanoseconds_of(seconds: &str) -> Vec<String> {
     [of(secs, ["nsecs", "nanosecs", "nanoseconds"]), of(sec, ["nanosec", "nsec", "nanoseconds"])].concat()
 }
 
-/// Lower case, without a unit in brackets after a blank: `X [m]` is `x`, but `position[0]` stays.
+/// The name in lower case, without a unit in brackets after a blank: `X [m]` becomes `x`, but `position[0]` stays.
 pub(super) fn base(name: &str) -> String {
     let name = name.trim().to_lowercase();
     match unit_at(&name) {
@@ -53,13 +53,14 @@ pub(super) fn base(name: &str) -> String {
     }
 }
 
-/// The unit in brackets at the end of a name, if there is one.
+/// The unit in brackets at the end of a name, if any.
 pub(crate) fn unit(name: &str) -> Option<&str> {
     let name = name.trim();
     unit_at(name).map(|at| name[at + 1..name.len() - 1].trim()).filter(|unit| !unit.is_empty())
 }
 
-/// Where a bracket with a unit opens: at the end, and with a letter or degree sign inside, since `position[0]` is an element.
+/// The position of the bracket that opens a unit: it is at the end and contains a letter or degree sign, because
+/// `position[0]` is an element.
 fn unit_at(name: &str) -> Option<usize> {
     let opening = match name.as_bytes().last()? {
         b']' => '[',
@@ -71,7 +72,7 @@ fn unit_at(name: &str) -> Option<usize> {
     (at > 0 && inside.starts_with(|letter: char| letter.is_alphabetic() || letter == '°')).then_some(at)
 }
 
-/// Names that the velocity of `state` may have, the first of them the best.
+/// Possible names for the velocity of `state`, the best first.
 pub(crate) fn velocity_names(state: &str) -> impl Iterator<Item = String> + use<> {
     let s = state;
     let mut names = vec![

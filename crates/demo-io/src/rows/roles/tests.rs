@@ -89,7 +89,7 @@ fn units_stand_in_brackets() {
 fn goals_need_no_velocity() {
     let roles = by_name(&["t", "x", "y", "vx", "vy", "goal_x", "goal_y"]);
     assert_eq!((&roles.state[..], &roles.velocity[..], &roles.context[..]), (&[1, 2][..], &[3, 4][..], &[5, 6][..]));
-    // Without any velocity all is state, of which preparation takes the context.
+    // Without velocities all columns are state; `prepare` separates the context.
     let roles = by_name(&["t", "x", "goal_x"]);
     assert_eq!((&roles.state[..], &roles.context[..]), (&[1, 2][..], &[][..]));
     let named = ReadOptions { context: vec!["c".to_owned()], state: vec!["x,c".to_owned()], ..ReadOptions::default() };

@@ -1,4 +1,4 @@
-//! A bag packed in chunks, with the indices by which viewers jump.
+//! A bag of compressed chunks, with the indices that viewers use for seeking.
 
 use std::collections::BTreeMap;
 use std::io::{self, Write};
@@ -7,10 +7,10 @@ use super::record::{Out, Record};
 use super::topic::Topic;
 use crate::rows::mcap::format::{MAGIC, opcode};
 
-/// A chunk is closed when its messages have so many bytes.
+/// A chunk is closed when its messages reach this number of bytes.
 const CHUNK: usize = 768 << 10;
 
-/// Writes a bag from its beginning to its end.
+/// Writes a bag from beginning to end.
 pub(super) struct Bag<W> {
     out: Out<W>,
     topics: Vec<Written>,
@@ -18,7 +18,7 @@ pub(super) struct Bag<W> {
     chunks: Vec<ChunkIndex>,
 }
 
-/// A topic of the bag, whose channel and schema have one number.
+/// A topic of the bag. Its channel and schema have the same number.
 struct Written {
     number: u16,
     topic: Topic,
@@ -29,20 +29,20 @@ struct Written {
 #[derive(Default)]
 struct Chunk {
     records: Vec<u8>,
-    /// Of the first and the last message.
+    /// Times of the first and the last message.
     times: Option<(u64, u64)>,
-    /// For each channel, time of each message and where it begins in `records`.
+    /// For each channel, the time of each message and its offset in `records`.
     index: BTreeMap<u16, Vec<(u64, u64)>>,
 }
 
 struct ChunkIndex {
-    /// Of the first and the last message.
+    /// Times of the first and the last message.
     times: (u64, u64),
     start: u64,
     length: u64,
-    /// Where the index of each channel's messages begins.
+    /// Offset of the message index of each channel.
     index: Vec<(u16, u64)>,
-    /// Length of these indices.
+    /// Total length of these indices.
     index_length: u64,
     packed: u64,
     unpacked: u64,
@@ -65,12 +65,13 @@ impl<W: Write> Bag<W> {
         Ok(Self { out, topics, chunk: Chunk::default(), chunks: Vec::new() })
     }
 
-    /// Adds a message to a topic by its place, at `time` nanoseconds; times do not fall.
+    /// Adds a message, at `time` nanoseconds, to a topic given by its index. Times must not
+    /// decrease.
     pub(super) fn message(&mut self, topic: usize, time: u64, data: &[u8]) -> io::Result<()> {
         let topic = &mut self.topics[topic];
         let mut record = Record::new(opcode::MESSAGE);
         record.u16(topic.number);
-        // Programs only look for gaps in it.
+        // Programs only use it to detect gaps.
         record.u32(topic.messages as u32);
         record.u64(time);
         record.u64(time);
@@ -138,7 +139,8 @@ impl<W: Write> Bag<W> {
         self.summary(name, metadata)
     }
 
-    /// What a viewer reads first: everything again but the messages, and where they are.
+    /// Writes the summary, which viewers read first: everything except the messages, and the
+    /// offsets.
     fn summary(mut self, name: &str, (at, length): (u64, u64)) -> io::Result<()> {
         let start = self.out.position;
         self.out.sum.reset();
@@ -166,7 +168,7 @@ impl<W: Write> Bag<W> {
         }
         let offsets_start = self.out.position;
         offsets.iter().try_for_each(|record| record.write(&mut self.out))?;
-        // The sum covers the footer up to where it stands itself.
+        // The checksum covers the footer up to the checksum itself.
         let mut footer = Record::new(opcode::FOOTER);
         footer.u64(start);
         footer.u64(offsets_start);
@@ -201,7 +203,7 @@ impl<W: Write> Bag<W> {
 }
 
 impl Written {
-    /// The type of the messages.
+    /// The schema of the messages.
     fn schema(&self) -> Record {
         let mut schema = Record::new(opcode::SCHEMA);
         schema.u16(self.number);

@@ -3,7 +3,7 @@ use std::io::{self, Write};
 
 use crc32fast::Hasher;
 
-/// A record while its fields are put together.
+/// A record under construction.
 pub(super) struct Record {
     pub(super) kind: u8,
     pub(super) content: Vec<u8>,
@@ -44,7 +44,7 @@ impl Record {
         });
     }
 
-    /// What `fill` puts in, with its length in front.
+    /// Adds the output of `fill`, preceded by its length.
     pub(super) fn block(&mut self, fill: impl FnOnce(&mut Self)) {
         let start = self.content.len();
         self.u32(0);
@@ -60,12 +60,12 @@ impl Record {
     }
 }
 
-/// Where bytes go, with their number and check sum.
+/// Destination of bytes, which counts them and computes their checksum.
 pub(super) struct Out<W> {
     inner: W,
-    /// Bytes written.
+    /// Number of bytes written.
     pub(super) position: u64,
-    /// Of what was written since it was reset.
+    /// Checksum of the bytes written since the last reset.
     pub(super) sum: Hasher,
 }
 

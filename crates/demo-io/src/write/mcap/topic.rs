@@ -1,6 +1,7 @@
-//! Topics of a bag, with what viewers need to know to take messages apart.
+//! Topics of a bag, with the information that viewers need to decode messages.
 
-/// A topic: its name, the type of its messages and the type's definition, with all that it uses.
+/// A topic: its name, the type of its messages, and the type's definition including all types that
+/// it uses.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Topic {
     pub(super) name: &'static str,
@@ -8,7 +9,7 @@ pub(super) struct Topic {
     pub(super) definition: &'static str,
 }
 
-/// The definition of what most messages begin with.
+/// The definition of the header with which most messages begin.
 macro_rules! header {
     () => {
         "\

@@ -1,4 +1,4 @@
-//! The conditioned model, and how it is evaluated.
+//! The conditioned model and its evaluation.
 
 mod sums;
 
@@ -33,7 +33,7 @@ pub struct DirectModel {
     /// z' and A of every row.
     table: RowTable,
     pub(crate) falling: Falling,
-    /// Of [`trend`].
+    /// From [`trend`].
     trend: [f64; 3],
     outline: Outline<Box<DirectModel>>,
 }
@@ -53,13 +53,13 @@ impl DirectModel {
         DirectModel { scaling, unit, blocks, amplitudes, z, weights, noise, whitening, table, falling, trend, outline }
     }
 
-    /// (R4): variance of every component at a state, in squared units of the state per second. Costs M².
+    /// (R4): variance of each component at a state, in squared units of the state per second. Costs M².
     pub fn variance(&self, state: DVectorView<'_, f64>) -> f64 {
         require(self.dim(), &[state.len()]);
         self.variances(state.as_view()).posterior[0]
     }
 
-    /// Prior variance of every component at a state, in the same units.
+    /// Prior variance of each component at a state, in the same units.
     pub fn prior_variance(&self, state: DVectorView<'_, f64>) -> f64 {
         let z = self.scaling.of_state(state);
         let each = self.blocks.iter().zip(&self.amplitudes);
@@ -67,8 +67,8 @@ impl DirectModel {
         self.unit.powi(2) * scaled
     }
 
-    /// Posterior (R4) and prior variance, the same of every component, at states with their contexts (n + p, N), both (1, N), in
-    /// parallel. A state alone gets the same bits as among others. Costs M² a state.
+    /// Posterior (R4) and prior variance, equal for all components, at states with their contexts (n + p, N), both (1, N), computed
+    /// in parallel. A single state gets the same bits as among others. Costs M² per state.
     pub(crate) fn variances(&self, states: DMatrixView<'_, f64>) -> Variances {
         Variances::of(states, 1, |states, prior, posterior| {
             let mut known = self.with_rows(states);
@@ -81,7 +81,7 @@ impl DirectModel {
         })
     }
 
-    /// k of (R4) at states: a column each, (M, N).
+    /// k of (R4) at states, one column each, (M, N).
     fn with_rows(&self, states: DMatrixView<'_, f64>) -> Panel {
         let mut panel = Panel::zeros(self.z.ncols(), states.ncols());
         let mut covariances = vec![0.0; self.z.ncols().next_multiple_of(TOGETHER)];
@@ -94,11 +94,12 @@ impl DirectModel {
         panel
     }
 
-    /// Whether the support of states with their contexts (n + p, N) is at least `least`, as their [`variances`](Self::variances) say.
+    /// Whether the support of states with their contexts (n + p, N) is at least `least`, according to their
+    /// [`variances`](Self::variances).
     pub(crate) fn supported(&self, states: DMatrixView<'_, f64>, least: f64) -> Vec<bool> {
         let DirectModel { scaling, unit, blocks, amplitudes, z, weights, noise, whitening, .. } = self;
         let part = |rows: &[usize]| {
-            // It is never whitened as a whole.
+            // The part is never whitened as a whole.
             let unused = Whitening::Rows { noise_weights: vec![1.0; rows.len()], factor: LazyFactor::default() };
             let (prior, noise) = ((blocks.clone(), amplitudes.clone()), (*noise, unused));
             let [z, weights] = [z, weights].map(|of| of.select_columns(rows));
@@ -115,7 +116,7 @@ impl DirectModel {
         supported(states, 1, least, some, |states| self.variances(states))
     }
 
-    /// û at each of the states with their contexts (n + p, N), (n, N), in parallel: the same bits as one by one.
+    /// û at states with their contexts (n + p, N), (n, N), computed in parallel with the same bits as one by one.
     pub(crate) fn moving_actions(&self, states: DMatrixView<'_, f64>) -> DMatrix<f64> {
         each_action(self.weights.nrows(), states, |state, action| self.moving_action_into(state, action))
     }

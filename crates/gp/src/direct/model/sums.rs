@@ -1,4 +1,5 @@
-//! Sums over rows in vector registers, one row a lane, added up group after group: the same bits in every width.
+//! Sums over rows in vector registers, one row per lane, added group after group, so that every width gives the same
+//! bits.
 
 #![allow(clippy::inline_always, reason = "vector instructions reach only what is inlined")]
 
@@ -9,14 +10,14 @@ use super::DirectModel;
 use crate::kernel::row_table::{Abreast, GROUPS, OverRows, firsts};
 use crate::rows::scaling::FEW;
 
-/// k(x)ᵀA at a scaled state `z`, (n + p), into (n).
+/// Computes k(x)ᵀA at a scaled state `z`, (n + p), into (n).
 pub(super) struct Action<'a> {
     pub(super) model: &'a DirectModel,
     pub(super) z: &'a [f64],
     pub(super) place: &'a mut [f64],
 }
 
-/// k(x), (M), followed by numbers without a meaning.
+/// Computes k(x), (M), followed by meaningless numbers.
 pub(super) struct CovariancesWithRows<'a> {
     pub(super) model: &'a DirectModel,
     pub(super) z: &'a [f64],
@@ -24,7 +25,7 @@ pub(super) struct CovariancesWithRows<'a> {
 }
 
 impl DirectModel {
-    /// Covariances with register `part` of U groups from `first` on of rows that stand together.
+    /// Covariances with register `part` of U groups, from `first` on, of rows that are stored together.
     #[inline(always)]
     fn covariances<S: Simd, const U: usize>(
         &self,
@@ -78,7 +79,7 @@ impl OverRows for Action<'_> {
     }
 }
 
-/// Adds covariances times `weights` of every component to register `part` of its sums.
+/// Adds covariances times `weights` of each component to register `part` of its sums.
 #[inline(always)]
 fn add<S: Simd, const U: usize>(
     covariances: [Register<S>; U],

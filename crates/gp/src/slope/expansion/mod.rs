@@ -1,4 +1,4 @@
-//! (S7), and how it is evaluated.
+//! (S7) and its evaluation.
 
 mod sums;
 
@@ -14,8 +14,8 @@ use crate::rows::scaling::Scaling;
 use crate::support::each_action;
 use sums::{Action, PolicyWithRows, PotentialSum};
 
-/// (S7): the posterior mean as a sum over rows, in the form in which it is evaluated fast. The trend's sums are taken
-/// once: they make a policy c + Qz.
+/// (S7): the posterior mean as a sum over rows, in a form that is fast to evaluate. The trend's sums are computed once and give a
+/// policy c + Qz.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Expansion {
     pub(crate) scaling: Scaling,
@@ -31,9 +31,9 @@ pub(crate) struct Expansion {
     /// z', n' and α of every row.
     table: RowTable,
     pub(crate) falling: Falling,
-    /// Of [`trend`].
+    /// From [`trend`].
     trend: [f64; 3],
-    /// c, (n + p), 0 along the context, and Q, (n + p, n + p), symmetric but for the rotation of the state.
+    /// c, (n + p), 0 along the context, and Q, (n + p, n + p), symmetric except for the rotation of the state.
     pub(crate) constant: DVector<f64>,
     pub(crate) matrix: DMatrix<f64>,
 }
@@ -48,7 +48,7 @@ impl Expansion {
         let (moving, dim) = (n.nrows(), z.nrows());
         let [linear, quadratic, skew] = trend(&blocks, &amplitudes, (moving, dim));
         let weighted = weighted(&n, &weights).resize_vertically(dim, 0.0);
-        // Σ α n zᵀ: its symmetric part is the quadratic block's, its skew part the skew block's.
+        // Σ α n zᵀ: its symmetric part belongs to the quadratic block, its skew part to the skew block.
         let outer = &weighted * z.transpose();
         let constant = weighted.column_sum() * linear;
         let mut rotation = &outer - outer.transpose();
@@ -72,7 +72,7 @@ impl Expansion {
         }
     }
 
-    /// The part of the blocks for which `stays`.
+    /// The part with the blocks for which `stays` is true.
     pub(crate) fn part(&self, stays: impl Fn(Block) -> bool) -> Self {
         let both = self.blocks.iter().zip(&self.amplitudes).filter(|(block, _)| stays(**block));
         let (blocks, amplitudes) = both.map(|(block, amplitude)| (*block, *amplitude)).unzip();
@@ -95,7 +95,7 @@ impl Expansion {
         self.z.nrows()
     }
 
-    /// π̂ at a state with its context, (n + p), into (n), in units of the state per second. Allocates nothing.
+    /// Computes π̂ at a state with its context, (n + p), into (n), in units of the state per second. Does not allocate.
     pub(crate) fn action_into(&self, state: &[f64], action: &mut [f64]) {
         self.scaling.with_coordinates(state, |z| {
             over_rows(Action { expansion: self, z, place: action });
@@ -105,12 +105,12 @@ impl Expansion {
         });
     }
 
-    /// π̂ at each of the states with their contexts (n + p, N), (n, N), in parallel: the same bits as one by one.
+    /// π̂ at states with their contexts (n + p, N), (n, N), computed in parallel with the same bits as one by one.
     pub(crate) fn actions(&self, states: DMatrixView<'_, f64>) -> DMatrix<f64> {
         each_action(self.moving(), states, |state, action| self.action_into(state, action))
     }
 
-    /// φ̂(x), in units of the state squared per second; meaningful without rotational blocks only. Allocates nothing.
+    /// φ̂(x), in units of the state squared per second; meaningful only without rotational blocks. Does not allocate.
     pub(crate) fn potential(&self, state: &[f64]) -> f64 {
         self.scaling.with_coordinates(state, |z| {
             let falling = over_rows(PotentialSum { expansion: self, z });
@@ -120,8 +120,8 @@ impl Expansion {
         })
     }
 
-    /// C_x of (S13): covariances of the policy at x, one column an axis, with every row's slope, (M, n), followed by rows without a
-    /// meaning.
+    /// C_x of (S13): covariances of the policy at x, one column per axis, with every row's slope, (M, n), followed by meaningless
+    /// rows.
     pub(crate) fn policy_with_rows(&self, state: &[f64]) -> DMatrix<f64> {
         let mut covariances = DMatrix::zeros(self.weights.len().next_multiple_of(TOGETHER), self.moving());
         self.scaling.with_coordinates(state, |z| {
@@ -130,7 +130,7 @@ impl Expansion {
         covariances
     }
 
-    /// [`policy_with_rows`](Self::policy_with_rows) at several states: n columns a state, (M, n N).
+    /// [`policy_with_rows`](Self::policy_with_rows) at several states: n columns per state, (M, n N).
     pub(crate) fn policy_with_rows_at(&self, states: &[DVectorView<'_, f64>]) -> Panel {
         let mut panel = Panel::zeros(self.weights.len(), self.moving() * states.len());
         for (at, state) in states.iter().enumerate() {

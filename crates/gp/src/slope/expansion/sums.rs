@@ -1,4 +1,4 @@
-//! Sums over rows in vector registers, one row a lane, added up group after group: the same bits in every width.
+//! Sums over rows in vector registers, one row per lane, added group after group, so that every width gives the same bits.
 
 #![allow(clippy::inline_always, reason = "vector instructions reach only what is inlined")]
 
@@ -10,27 +10,27 @@ use super::Expansion;
 use crate::kernel::row_table::{Abreast, GROUPS, OverRows, firsts};
 use crate::rows::scaling::FEW;
 
-/// Σ α (g n' − h β (z − z')) over all rows at a scaled state `z`, (n + p), into (n).
+/// Computes Σ α (g n' − h β (z − z')) over all rows at a scaled state `z`, (n + p), into (n).
 pub(super) struct Action<'a> {
     pub(super) expansion: &'a Expansion,
     pub(super) z: &'a [f64],
     pub(super) place: &'a mut [f64],
 }
 
-/// Σ α g β over all rows.
+/// Computes Σ α g β over all rows.
 pub(super) struct PotentialSum<'a> {
     pub(super) expansion: &'a Expansion,
     pub(super) z: &'a [f64],
 }
 
-/// C_x of (S13).
+/// Computes C_x of (S13).
 pub(super) struct PolicyWithRows<'a> {
     pub(super) expansion: &'a Expansion,
     pub(super) z: &'a [f64],
     pub(super) covariances: &'a mut DMatrix<f64>,
 }
 
-/// Some rows at a state.
+/// Some rows, relative to a state.
 struct Rows<'a, S: Simd, const U: usize> {
     /// z', (n + p).
     states: &'a [Abreast],
@@ -44,7 +44,7 @@ struct Rows<'a, S: Simd, const U: usize> {
 }
 
 impl Expansion {
-    /// Register `part` of U groups from `first` on of rows that stand together.
+    /// Register `part` of U groups, from `first` on, of rows that are stored together.
     #[inline(always)]
     fn rows<'a, S: Simd, const U: usize>(
         &self,
@@ -105,7 +105,7 @@ impl OverRows for Action<'_> {
 }
 
 impl<S: Simd, const U: usize> Rows<'_, S, U> {
-    /// Adds their parts of the action, from axis `from` on, to register `part` of its sums.
+    /// Adds the rows' parts of the action, from axis `from` on, to register `part` of its sums.
     #[inline(always)]
     fn add_action(&self, (z, from): (&[f64], usize), (first, part): (usize, usize), sums: &mut [[f64; LANES]]) {
         let simd = self.g[0].token();
@@ -167,8 +167,8 @@ impl OverRows for PolicyWithRows<'_> {
 }
 
 impl<S: Simd, const U: usize> Rows<'_, S, U> {
-    /// Covariances of every axis with their slopes: g n' − h β (z − z'), and a trend's a n' + b (n' zᵀz' + z' n'ᵀz) + c (n' xᵀx' −
-    /// z' n'ᵀz), where x is the state in z.
+    /// Covariances of each axis with the rows' slopes: g n' − h β (z − z'), and a trend's a n' + b (n' zᵀz' + z' n'ᵀz) + c (n'
+    /// xᵀx' − z' n'ᵀz), where x is the state in z.
     #[inline(always)]
     fn covariances<'p>(
         &self,

@@ -1,4 +1,4 @@
-//! Wrong stretches among many (S44): a switch that was not seen, or noise taken for a direction.
+//! Wrong stretches among many (S44), caused by an undetected switch, or by noise taken for a direction.
 
 use motion::upper_median;
 
@@ -7,19 +7,19 @@ use crate::rows::kept::positions;
 use crate::slope::pushed::Pushed;
 use crate::slope::search::Outcome;
 
-/// Error of a stretch, in that of the median, above which it is contradicted.
+/// Multiple of the median error above which a stretch counts as contradicted.
 const TIMES: f64 = 25.0;
-/// Most noise of a stretch, in that of others: what overflows tells nothing.
+/// Maximum noise factor of a stretch, against overflow.
 const MOST: f64 = 1e30;
-/// How often they are looked for: a better model shows more of them, and that some are none.
+/// Maximum number of rounds: a better model finds more contradicted stretches, and clears others.
 const ROUNDS: usize = 4;
-/// Rows of each stretch that are compared, on average, and of all.
+/// Number of compared rows per stretch, on average, and in total.
 const EACH: usize = 4;
 const ALL: usize = 20_000;
 
 impl Pushed {
-    /// The search in which stretches that other movements contradict are as noisy as their errors, if that predicts the others no worse. They
-    /// still tell something where no other movement was.
+    /// The search in which the noise of stretches that other movements contradict is raised to their errors, if that predicts the other
+    /// stretches no worse. Contradicted stretches still count in regions without other movements.
     pub(super) fn with_contradicted(self, rows: &Rows) -> Pushed {
         let rows = &*self.of_samples(rows);
         let mut errors = self.errors(rows);
@@ -36,7 +36,7 @@ impl Pushed {
         taken
     }
 
-    /// The search in which stretches of the largest errors are as noisy; none if they are those that are already.
+    /// The search with raised noise for the stretches with the largest errors; `None` if these are the same as before.
     fn with_doubts(&self, rows: &Rows, errors: &[Option<f64>]) -> Option<Pushed> {
         let Pushed { kept, gp, .. } = self;
         let median = upper_median(errors.iter().copied().flatten().collect()).filter(|&median| median > 0.0)?;
@@ -49,27 +49,27 @@ impl Pushed {
         if both.all(|(a, b)| a.is_contradicted() == b.is_contradicted()) {
             return None;
         }
-        // In a task space rows are many, and of a few models already.
+        // In a task space there are many rows, and few models are left to try.
         match stretches.through {
             Some(_) => self.of_nearly_best(gp, rows, kept, stretches),
             None => Pushed::search(gp, rows, kept, stretches),
         }
     }
 
-    /// Of the stretches that are not contradicted.
+    /// Sum over the stretches that are not contradicted.
     fn sum(&self, errors: &[Option<f64>]) -> f64 {
         let each = errors.iter().zip(&self.stretches.all).filter(|(_, stretch)| !stretch.is_contradicted());
         each.filter_map(|(error, _)| *error).sum()
     }
 
-    /// E of (S44) of each stretch, contradicted or not; none of those that have no rows.
+    /// E of (S44) of each stretch, contradicted or not; `None` for a stretch without rows.
     fn errors(&self, rows: &Rows) -> Vec<Option<f64>> {
         let Pushed { outcome: Outcome { data, taken, .. }, kept, stretches, .. } = self;
         let Some(some) = stretches.of_any(rows, kept, (EACH * stretches.all.len()).min(ALL)) else {
             return vec![None; stretches.all.len()];
         };
         let actions = taken.model.actions(&some.states);
-        // Those that were not learnt from are predicted as they are: most stretches then have none that was.
+        // Predicts rows that were not learnt from by the full model. Otherwise most stretches would have no residual.
         let mut residuals: Vec<f64> = (0..some.rows.len())
             .map(|row| some.speeds[row] - some.velocities.column(row).dot(&actions.column(row)) / some.speeds[row])
             .collect();

@@ -1,4 +1,4 @@
-//! Rows of stretches in place of rows of samples, where constraints push: after the search on samples.
+//! Replaces rows of samples by rows of stretches if constraints push, after the search on samples.
 
 mod contradicted;
 
@@ -20,13 +20,13 @@ use crate::stretches::{Stretches, Switches};
 pub(crate) struct Pushed {
     pub(crate) outcome: Outcome,
     pub(crate) kept: Kept,
-    /// Where the rows are from, and what searched on them.
+    /// The source of the rows, and the learner that searched on them.
     stretches: Stretches,
     gp: SlopeGp,
 }
 
-/// The search on rows of stretches (S22) that predicts left-out movements better than `plain`, the one on rows of samples: of stretches in
-/// the recorded coordinates, or in the task space that expects the least error.
+/// The search on rows of stretches (S22) if it predicts left-out movements better than `plain`, the search on rows of samples. The
+/// stretches are those in the recorded coordinates, or in the task space with the least expected error.
 pub(crate) fn pushed(gp: &SlopeGp, rows: &Rows, kept: &Kept, plain: &Outcome) -> Option<Pushed> {
     if gp.push_test == PushTest::AssumeNone {
         return None;
@@ -36,20 +36,21 @@ pub(crate) fn pushed(gp: &SlopeGp, rows: &Rows, kept: &Kept, plain: &Outcome) ->
     in_task_space(gp, rows, (kept, own), outcome).or(recorded)
 }
 
-/// Rows of stretches in a task space for one row of samples, since every sample has several, those that set amplitudes, and inducing ones;
-/// and the most of them that are taken, unless more are asked for.
+/// For task spaces, multiples of the usual numbers of rows (because each sample has several), of rows that determine amplitudes, and of
+/// inducing rows; and the maxima of the products, unless the user requests more.
 const TIMES: [usize; 3] = [6, 2, 3];
 const MOST: [usize; 3] = [2400, 400, 1500];
-/// Rows for each stretch in the recorded coordinates from which on more say nearly the same.
+/// From this many rows per stretch on, in the recorded coordinates, more rows add almost nothing.
 const OF_A_STRETCH: usize = 4;
-/// Of those that expect least on few rows, so many are fitted to more: few rows do not show a wrong stretch among many.
+/// Number of candidates with the least expected error on few rows that are fitted to more rows, because few rows do not reveal a wrong
+/// stretch among many.
 const FINALISTS: usize = 3;
-/// They expect at most so many times what the first of them does.
+/// Their expected error is at most this multiple of the least.
 const NEARLY: f64 = 2.0;
 /// Expected error up to which task spaces are not tried.
 const NEARLY_EXACT: f64 = 1e-3;
 
-/// Of stretches in the task space that expects the least error, if that is less than `outcome` expects.
+/// The search on stretches in the task space with the least expected error, if that is below the error expected of `outcome`.
 fn in_task_space(gp: &SlopeGp, rows: &Rows, (kept, own): (&Kept, &Kept), outcome: &Outcome) -> Option<Pushed> {
     if rows.task_spaces().is_empty() || rows.momenta().is_some() {
         return None;
@@ -92,15 +93,15 @@ fn in_task_space(gp: &SlopeGp, rows: &Rows, (kept, own): (&Kept, &Kept), outcome
     best.filter(|(error, _)| *error < before).map(|(_, pushed)| pushed)
 }
 
-/// (S19) of `own` rows, for R² of slow rows that are certain is not that of fast ones alone: on all movements, as if nothing were
-/// known of those that have none.
+/// Expected error (S19) with `own` rows, divided by the share of the movements that have such rows. R² is not used, because slow, certain
+/// rows and fast rows alone do not have comparable R².
 fn expected(rows: &Rows, outcome: &Outcome, own: &Kept, samples: &Kept) -> f64 {
     let report = report(&ReportInput { outcome, kept: own, rows, across: CrossPathEvidence::Tested });
     report.expected_nupe / covered(rows, own, samples)
 }
 
-/// Of stretches in the recorded coordinates. Not tried where `plain` predicts nearly exactly. Where nothing pushes, only noise of the
-/// directions can be gained, by those of whole movements (S32).
+/// The search on stretches in the recorded coordinates. If a push is detected, not tried if `plain` predicts nearly exactly. Without a
+/// push, the only possible gain is in the noise of the directions, through those of whole movements (S32).
 fn recorded(gp: &SlopeGp, rows: &Rows, kept: &Kept, plain: &Outcome) -> Option<Pushed> {
     let settled = plain.taken.left_out.is_nearly_exact();
     if settled && rows.variances().is_none() {
@@ -124,34 +125,34 @@ impl Pushed {
         Some(Pushed { outcome: outcome(gp, &kept).ok()?, kept, stretches, gp: gp.clone() })
     }
 
-    /// The same on other rows, of the models alone that nearly were the best ones here.
+    /// The same search on other rows, restricted to the models that were nearly the best here.
     fn of_nearly_best(&self, gp: &SlopeGp, rows: &Rows, kept: &Kept, stretches: Stretches) -> Option<Pushed> {
         let kept = stretches.rows(rows, kept, &gp.selection().ok()?)?;
         let outcome = outcome_of_nearly_best(gp, &kept, &self.outcome).ok()?;
         Some(Pushed { outcome, kept, stretches, gp: gp.clone() })
     }
 
-    /// The samples that rows of the stretches are of: in a task space perhaps means.
+    /// The samples to which rows of the stretches belong; in a task space they may be means.
     fn of_samples<'a>(&self, rows: &'a Rows) -> Cow<'a, Rows> {
         if self.stretches.through.is_some() { rows.averaged() } else { Cow::Borrowed(rows) }
     }
 
-    /// Whether the constraints push: then samples say nothing true, however many they are.
+    /// Whether the constraints push. Rows of samples are then wrong, whatever their number.
     pub(crate) fn pushes(&self) -> bool {
         self.stretches.pushed
     }
 
-    /// Whether this expects less than a search on rows of samples.
+    /// Whether the expected error is lower than that of a search on rows of samples.
     pub(crate) fn expects_less(&self, rows: &Rows, samples: &Outcome, kept: &Kept) -> bool {
         expected(rows, &self.outcome, &self.kept, kept) < expected(rows, samples, kept, kept)
     }
 
-    /// The search on all rows of the stretches, where that pays, with doubts about those that other movements contradict. Only once rows of
-    /// stretches are taken: where many are wrong, the others predict well, too.
+    /// The search on all rows of the stretches, if that improves it, after raising the noise of contradicted stretches. Used only once rows
+    /// of stretches are selected, because if many stretches are wrong, the others predict well, too.
     pub(crate) fn on_all_rows(self, rows: &Rows) -> Pushed {
         let taken = self.with_contradicted(rows);
         let Pushed { outcome, kept, stretches, gp } = &taken;
-        // Rows of one stretch share the error of their directions.
+        // Rows of one stretch share the error of its directions.
         if stretches.through.is_none() && kept.rows.len() >= OF_A_STRETCH * stretches.all.len() {
             return taken;
         }
@@ -164,9 +165,9 @@ impl Pushed {
         }
     }
 
-    /// Held-out squared error of one row a sample on each of these trajectories, as a share of what was to predict in all of its rows: along
-    /// the velocity itself all of it is in one. At most 1, that of predicting nothing: in few rows there may be little to predict. On a trajectory
-    /// without stretches the share of all others together.
+    /// Held-out squared error of one row per sample on each of these trajectories, as a share of the quantity to predict in all of the
+    /// sample's rows (with rows along the velocity itself, one row contains all of it). At most 1, the error of predicting nothing, because
+    /// a few rows may contain little to predict. A trajectory without stretches gets the share of all others together.
     pub(crate) fn shares(&self, trajectories: &[usize]) -> Vec<f64> {
         let Outcome { data, taken, .. } = &self.outcome;
         let weighed = |rows: &[usize], of: &dyn Fn(usize) -> f64| -> f64 {

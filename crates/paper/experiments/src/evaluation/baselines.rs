@@ -1,4 +1,4 @@
-//! Baselines, compared with the paper's learner: the same recordings, the same held-out samples, the same judge.
+//! Baselines for comparison with the paper's learner, on the same recordings, held-out samples and measures.
 
 use std::collections::BTreeMap;
 
@@ -21,24 +21,24 @@ use crate::measure::{Measure, RowOf};
 use crate::seed::separate_stream;
 use crate::{Measures, Row, Setup, Trial};
 
-/// Data sets that they learn from: errors that are smaller by orders of magnitude need no hundred.
+/// Number of data sets for the baselines. Errors that are orders of magnitude smaller do not require a hundred.
 pub const DATA_SETS: u32 = 5;
 
-/// Who is compared with the paper's learner.
+/// The learners that are compared with the paper's.
 #[derive(Serialize)]
 pub struct Baselines {
-    /// The naive learner, where the paper's table has none.
+    /// The naive learner, if the paper's table does not include it.
     pub(crate) naive: Option<DirectPolicyLearning>,
-    /// Least squares on radial basis functions, where states are planar.
+    /// Least squares on radial basis functions, for planar states.
     pub(crate) constraint_consistent: Option<ConstraintConsistent>,
     pub(crate) gaussians: Gaussians,
-    /// Share of the samples that is held out.
+    /// Share of held-out samples.
     pub held_out: f64,
 }
 
-/// What they learnt, and those who judge it.
+/// The trained baselines, and the judges of their errors.
 pub(crate) struct TrainedBaselines<'a> {
-    /// For each alignment: on samples of the movements that it keeps, and of all.
+    /// For each alignment: on held-out samples of the movements that it keeps, and of all movements.
     judges: Vec<[Judge<'a>; 2]>,
     naive: Option<Box<dyn LearntPolicy>>,
     radial_basis: Option<RadialBasis>,
@@ -58,7 +58,7 @@ impl Baselines {
         Gaussians::cost(self.gaussians.max_rows)
     }
 
-    /// In the order of the rows.
+    /// The learners, in the order of the rows.
     pub(crate) fn methods(&self) -> Vec<Method> {
         let naive = self.naive.as_ref().map(|_| Method::Naive);
         let radial_basis = self.constraint_consistent.as_ref().map(|_| Method::ConstraintConsistent);
@@ -72,12 +72,12 @@ impl Baselines {
         self.methods().into_iter().map(row).collect()
     }
 
-    /// A line of the table: those of a case and PolicyAlign, of which the case is named.
+    /// A line of the table: the errors of a case's baselines, and of PolicyAlign, whose row is named `case`.
     pub(crate) fn comparison(&self, case: &str, measure: Measure) -> Comparison {
         Comparison::of(case, measure, &self.methods()).with(Method::PolicyAlign, case, measure)
     }
 
-    /// The setup of this name and system in which a trial of them measures the rows of these cases.
+    /// A setup with this name and system, whose trial measures the rows of these cases.
     pub(crate) fn setup<T: Trial + 'static>(
         self,
         (id, system): (&str, u32),
@@ -89,10 +89,10 @@ impl Baselines {
         Setup { data_sets: Some(DATA_SETS), ..Setup::new(id, system, cost, rows, trial(self)) }
     }
 
-    /// The slope GP alone.
+    /// Learns with the slope GP alone.
     ///
     /// # Errors
-    /// If nothing can be learnt from them.
+    /// If the demonstrations do not suffice for learning.
     pub fn slope(
         &self,
         demonstrations: &Demonstrations,
@@ -102,8 +102,8 @@ impl Baselines {
         self.gaussians.slope(Trend::Quadratic, demonstrations, held_out, rng)
     }
 
-    /// Lets them learn from all samples but those held out for any of the alignments. The generator stands where it does
-    /// when alignment draws its test samples, and is left there.
+    /// Learns from all samples except those held out for any of the alignments. `rng` must be in the state in which
+    /// alignment draws its test samples; it does not change.
     pub(crate) fn train<'a>(
         &self,
         recordings: &'a [Recording],
@@ -135,7 +135,7 @@ impl Baselines {
 }
 
 impl<'a> TrainedBaselines<'a> {
-    /// In the order of the rows.
+    /// The learnt policies, in the order of the rows.
     pub(crate) fn learnt(&self) -> Vec<&dyn LearntPolicy> {
         let naive = self.naive.as_deref();
         let gaussians: [&dyn LearntPolicy; 3] = [self.both.slope(), &self.no_trend, self.both.direct()];
@@ -143,12 +143,12 @@ impl<'a> TrainedBaselines<'a> {
         naive.into_iter().chain(radial_basis).chain(gaussians).collect()
     }
 
-    /// On samples of movements that an alignment keeps, and of all.
+    /// Judges on samples of the movements that an alignment keeps, and of all movements.
     pub(crate) fn judges(&self, alignment: usize) -> &[Judge<'a>; 2] {
         &self.judges[alignment]
     }
 
-    /// A row for each learner and alignment, alignment after alignment.
+    /// One row for each alignment and learner, by alignment.
     pub(crate) fn rows(&self) -> anyhow::Result<Measures> {
         let mut rows = Vec::new();
         for [kept, all] in &self.judges {
@@ -163,7 +163,7 @@ impl<'a> TrainedBaselines<'a> {
         Ok(rows)
     }
 
-    /// What the learners say of themselves, into the last rows.
+    /// Adds the learners' own estimates of their errors to the last rows.
     fn add_doubts(&self, rows: &mut Measures) {
         let expected = BTreeMap::from([(Measure::ExpectedNupe, 1.0 - self.both.direct().r_squared())]);
         let mut of_slope = own_expectations(self.both.slope());
@@ -175,11 +175,11 @@ impl<'a> TrainedBaselines<'a> {
     }
 }
 
-/// Where recordings come from.
+/// Source of recordings.
 pub(crate) trait Scene: Serialize + Send + Sync {
     fn recordings(&self, rng: &mut ChaCha8Rng) -> anyhow::Result<Vec<Recording>>;
 
-    /// Movements that nobody learns from; none where only held-out samples are tested.
+    /// Test movements, which no learner sees; `None` if only held-out samples are tested.
     fn fresh(&self, _rng: &ChaCha8Rng) -> anyhow::Result<Option<Vec<Recording>>> {
         Ok(None)
     }
@@ -207,7 +207,7 @@ impl Scene for ThreeLinkArm {
     }
 }
 
-/// Their rows of a table, for one or more alignments of the same recordings.
+/// The baselines' rows of a table, for one or more alignments of the same recordings.
 #[derive(Serialize)]
 pub(crate) struct BaselinesTrial<S> {
     pub(crate) scene: S,
@@ -217,7 +217,7 @@ pub(crate) struct BaselinesTrial<S> {
 }
 
 impl<S: Scene + 'static> BaselinesTrial<S> {
-    /// Such trials, of a scene.
+    /// A setup with a trial of the baselines on a scene.
     pub(crate) fn setup(
         id: (&str, u32),
         cases: &[impl AsRef<str>],
@@ -249,7 +249,7 @@ mod tests {
     use crate::seed::generator;
     use crate::tables::table1::{toy_baselines, toy_regressor};
 
-    /// The same samples as PolicyAlign's evaluation, and no learner has seen one of them.
+    /// The test samples are those of PolicyAlign's evaluation, and no learner has seen them.
     #[test]
     fn they_are_tested_where_policy_align_is() {
         let system = ToySystem { n_trajectories: 20, ..ToySystem::default() };
@@ -266,7 +266,7 @@ mod tests {
         let rows = trained.rows().unwrap();
         assert_eq!(rows.len(), baselines.rows("case").len());
         let [naive, radial_basis, slope, no_trend, direct] = [0, 1, 2, 3, 4].map(|row| rows[row][&Measure::Nupe]);
-        // The parabola is in the slope GP's families; without a trend it is not.
+        // The slope GP's families contain the parabola only with a trend.
         assert!(slope < 1e-12 && slope < no_trend && no_trend < 1e-2, "{slope} {no_trend}");
         assert!(naive > 0.1 && direct > 0.1, "{naive} {direct}");
         assert!(radial_basis < naive, "{radial_basis}");

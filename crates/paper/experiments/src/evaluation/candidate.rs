@@ -9,12 +9,12 @@ use serde_json::Value;
 /// One of the learners that an experiment scores.
 #[derive(Serialize)]
 pub(crate) enum Candidate {
-    /// The paper's method: regression on the potentials as the evaluation has aligned them. It is what
-    /// [`align::PotentialPolicyLearning`] learns, to the last bit, without aligning once more.
+    /// The paper's method: regression on the potentials that the evaluation has already aligned. The result is
+    /// identical to the last bit to that of [`align::PotentialPolicyLearning`], without a second alignment.
     PolicyAlign(LwprRegressor),
-    /// A learner that begins with the demonstrations.
+    /// A learner that starts from the demonstrations.
     Other {
-        /// It.
+        /// The learner.
         #[serde(skip)]
         learner: Box<dyn Learner>,
         /// All its parameters, by name.
@@ -23,12 +23,12 @@ pub(crate) enum Candidate {
 }
 
 impl Candidate {
-    /// A learner that begins with the demonstrations.
+    /// A learner that starts from the demonstrations.
     pub(crate) fn other<L: Learner + Serialize + 'static>(learner: L) -> anyhow::Result<Candidate> {
         Ok(Candidate::Other { parameters: serde_json::to_value(&learner)?, learner: Box::new(learner) })
     }
 
-    /// Learns from all samples but those held out.
+    /// Learns from all samples except the held-out ones.
     pub(crate) fn learn(
         &self,
         aligned: &Aligned,
@@ -52,7 +52,7 @@ mod tests {
     use super::*;
     use crate::seed::generator;
 
-    /// The short way of the first entry leads to the same place as the long one.
+    /// Learning from aligned potentials gives the same result as aligning again.
     #[test]
     fn potentials_that_are_aligned_need_no_second_alignment() {
         let system = ToySystem { n_trajectories: 12, ..ToySystem::default() };

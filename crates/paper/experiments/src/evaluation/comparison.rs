@@ -1,8 +1,8 @@
-//! Learners compared, as a table shows them: a line for each error, a column for each learner.
+//! Comparisons of learners as tables: one line per error, one column per learner.
 
 use crate::measure::Measure;
 
-/// Whom such tables have a column for, in its order.
+/// The learners of these tables, in the order of the columns.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Method {
     /// LWPR on the velocities.
@@ -13,18 +13,18 @@ pub enum Method {
     ConstraintConsistent,
     /// The slope GP.
     SlopeGp,
-    /// The slope GP whose families hold no quadratic potential.
+    /// The slope GP without quadratic potentials in its families.
     SlopeGpNoTrend,
-    /// The slope GP that may learn from stretches, where constraints push.
+    /// The slope GP that may learn from stretches, for constraints that push.
     SlopeGpPushed,
     /// A Gaussian process on the velocities.
     DirectGp,
-    /// The slope GP or the direct GP, whichever the data support.
+    /// The slope GP or the direct GP, as the data support.
     AutoGp,
 }
 
 impl Method {
-    /// In the order of the columns.
+    /// All learners, in the order of the columns.
     pub const ALL: [Method; 8] = [
         Method::Naive,
         Method::PolicyAlign,
@@ -36,7 +36,7 @@ impl Method {
         Method::AutoGp,
     ];
 
-    /// Its name in rows.
+    /// Its name in the ids of rows.
     pub fn id(self) -> &'static str {
         match self {
             Method::Naive => "naive",
@@ -66,7 +66,7 @@ impl Method {
 }
 
 impl Method {
-    /// What it learns from and how, in a line.
+    /// Its data and method, in one line.
     pub fn description(self) -> &'static str {
         match self {
             Method::Naive => {
@@ -97,32 +97,32 @@ impl Method {
 
 /// One line of such a table: an error of each learner on the same data sets.
 pub struct Comparison {
-    /// What was learnt from.
+    /// The training data.
     pub case: String,
     /// The error.
     pub measure: Measure,
-    /// Where each learner's error stands among the experiment's rows.
+    /// The positions of the learners' errors in the experiment's rows.
     pub entries: Vec<Entry>,
 }
 
 /// The cell of one learner.
 pub struct Entry {
-    /// Who.
+    /// The learner.
     pub method: Method,
-    /// In which row.
+    /// The id of its row.
     pub row: String,
-    /// Which error of the row.
+    /// The measure in that row.
     pub measure: Measure,
 }
 
 impl Comparison {
-    /// Of learners whose rows are named `case/learner`.
+    /// Compares learners whose rows are named `case/learner`.
     pub(crate) fn of(case: &str, measure: Measure, methods: &[Method]) -> Comparison {
         let entry = |&method: &Method| Entry { method, row: row_id(case, method), measure };
         Comparison { case: case.to_owned(), measure, entries: methods.iter().map(entry).collect() }
     }
 
-    /// And one whose error stands elsewhere.
+    /// Adds a learner whose error is in another row.
     pub(crate) fn with(mut self, method: Method, row: &str, measure: Measure) -> Comparison {
         self.entries.push(Entry { method, row: row.to_owned(), measure });
         self.entries.sort_by_key(|entry| entry.method);
@@ -130,7 +130,7 @@ impl Comparison {
     }
 }
 
-/// The row of a learner in a case.
+/// The id of a learner's row in a case.
 pub(crate) fn row_id(case: &str, method: Method) -> String {
     format!("{case}/{}", method.id())
 }

@@ -1,18 +1,18 @@
-//! Howard's later learner, as a baseline: no alignment, one least-squares problem on radial basis functions.
+//! Howard's later learner as a baseline: one least-squares problem on radial basis functions, without alignment.
 
 use motion::{Demonstrations, LearntPolicy, Policy, Potential, SampleIndex, SampleSet};
 use nalgebra::{DMatrix, DVector, DVectorView, DVectorViewMut};
 use serde::Serialize;
 
-/// Learns the potential φ(x) = Σ w exp(−‖x − c‖² / 2h²) whose policy has the observed speed in the observed direction:
-/// least squares of ûᵀ(−∇φ(x)) − ‖u‖ over all samples, since a projection along û leaves ‖u‖ of the policy whatever the
-/// constraint (Howard, Klanke, Gienger, Goerick and Vijayakumar, *A novel method for learning policies from variable
+/// Learns the potential φ(x) = Σ w exp(−‖x − c‖² / 2h²) whose policy has the observed speed in the observed direction,
+/// by least squares of ûᵀ(−∇φ(x)) − ‖u‖ over all samples. Under any constraint, the projection of the policy onto û has
+/// length ‖u‖ (Howard, Klanke, Gienger, Goerick and Vijayakumar, *A novel method for learning policies from variable
 /// constraint data*, Autonomous Robots 27, 2009).
 #[derive(Serialize)]
 pub(crate) struct ConstraintConsistent {
-    /// Centres c along each axis of the box that the samples fill; h is their distance.
+    /// Number of centres c along each axis of the bounding box of the samples; h is their distance.
     pub(crate) centres: usize,
-    /// Added to the diagonal of the normal equations, as a share of its mean.
+    /// Added to the diagonal of the normal equations, relative to its mean.
     pub(crate) ridge: f64,
 }
 
@@ -22,7 +22,7 @@ impl Default for ConstraintConsistent {
     }
 }
 
-/// What it learns.
+/// The learnt potential.
 #[derive(Debug)]
 pub(crate) struct RadialBasis {
     /// (n, K).
@@ -32,7 +32,8 @@ pub(crate) struct RadialBasis {
 }
 
 impl ConstraintConsistent {
-    /// Learns from all samples of planar movements but those held out: recorded velocities, or else u = (x' − x) / δt.
+    /// Learns from all samples of planar movements except the held-out ones, using recorded velocities, or else u = (x'
+    /// − x) / δt.
     pub(crate) fn learn(
         &self,
         demonstrations: &Demonstrations,
@@ -73,7 +74,7 @@ fn corner(samples: &[(DVector<f64>, DVector<f64>)], extreme: fn(f64, f64) -> f64
 }
 
 impl RadialBasis {
-    /// What each basis function adds to ûᵀ(−∇φ), (K).
+    /// The contribution of each basis function to ûᵀ(−∇φ), (K).
     fn slopes(&self, state: DVectorView<'_, f64>, direction: &DVector<f64>) -> DVector<f64> {
         DVector::from_iterator(
             self.weights.len(),
@@ -124,7 +125,7 @@ impl LearntPolicy for RadialBasis {
         Some(self)
     }
 
-    /// It has no measure of its own: everywhere as good as in the midst.
+    /// This learner has no measure of support: 1 everywhere.
     fn support(&self, _state: DVectorView<'_, f64>) -> f64 {
         1.0
     }
@@ -139,7 +140,7 @@ mod tests {
     use crate::evaluation::observation_model::samples_of;
     use crate::seed::generator;
 
-    /// On clean movements it finds the policy, and −∇φ is what its potential says.
+    /// From clean movements it recovers the policy, which is −∇φ of its potential.
     #[test]
     fn it_finds_the_policy_of_clean_movements() {
         let recordings = ToySystem::default().record(&mut generator(1, 0, 0)).unwrap();

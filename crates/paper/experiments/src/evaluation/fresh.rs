@@ -1,5 +1,5 @@
-//! Movements that nobody learns from, from new starts and under constraints of their own: how a policy does where the
-//! movements that alignment kept may never have been.
+//! Test movements, which no learner sees, from new starts and under separate constraints. They measure a policy where
+//! the movements kept by alignment may never have been.
 
 use demo_gen::{Recording, ToySystem};
 use motion::LearntPolicy;
@@ -11,16 +11,16 @@ use crate::evaluation::observation_model::samples_of;
 use crate::measure::Measure;
 use crate::seed;
 
-/// Movements a data set.
+/// Number of movements per data set.
 const MOVEMENTS: usize = 10;
 
-/// Movements of a system, which take nothing from the generator of its data set.
+/// Movements of a system. They do not advance the generator of the data set.
 pub(crate) fn fresh(system: &ToySystem, rng: &ChaCha8Rng) -> anyhow::Result<Vec<Recording>> {
     let system = ToySystem { n_trajectories: MOVEMENTS, ..system.clone() };
     Ok(system.record(&mut seed::fresh(rng))?)
 }
 
-/// Adds each learner's error on them to its row.
+/// Adds each learner's error on these movements to its row.
 pub(crate) fn add_errors<'a>(
     rows: &mut Measures,
     learnt: impl Iterator<Item = &'a dyn LearntPolicy>,

@@ -1,4 +1,4 @@
-//! The Gaussian processes of an experiment: what they learn, and what they say of themselves.
+//! The Gaussian processes of an experiment: training, errors, and their own estimates.
 
 use std::collections::BTreeMap;
 
@@ -11,26 +11,27 @@ use crate::evaluation::judge::Judge;
 use crate::evaluation::protocol::errors;
 use crate::measure::Measure;
 
-/// The slope GP and the direct GP, both as they come, from at most so many rows.
+/// The slope GP and the direct GP with their defaults, from at most `max_rows` rows.
 #[derive(Serialize)]
 pub struct Gaussians {
-    /// What was recorded.
+    /// The recorded quantities.
     pub(crate) front_end: FrontEnd,
-    /// Rows learnt from.
+    /// Number of rows for learning.
     pub(crate) max_rows: usize,
-    /// Rows that amplitudes are chosen on.
+    /// Number of rows for the choice of amplitudes.
     pub(crate) hyper_rows: usize,
     /// Whether constraints may push.
     #[serde(skip_serializing_if = "is_none")]
     pub(crate) push_test: PushTest,
 }
 
-#[allow(clippy::trivially_copy_pass_by_ref)] // serde wants it
+#[allow(clippy::trivially_copy_pass_by_ref)] // serde requires a reference
 fn is_none(push_test: &PushTest) -> bool {
     *push_test == PushTest::AssumeNone
 }
 
-/// Rows that amplitudes are chosen on, in experiments: evidence of more costs most of a fit and changes little.
+/// Number of rows for the choice of amplitudes in experiments. The evidence of more rows takes most of the time of a fit and
+/// changes little.
 const HYPER_ROWS: usize = 250;
 
 impl Gaussians {
@@ -38,16 +39,17 @@ impl Gaussians {
         Gaussians { front_end, max_rows, hyper_rows: HYPER_ROWS.min(max_rows), push_test: PushTest::AssumeNone }
     }
 
-    /// Work of fits to so many rows, in the unit of [`Setup::cost`](crate::Setup::cost).
+    /// Work of fits to `max_rows` rows, in the unit of [`Setup::cost`](crate::Setup::cost).
     pub(crate) fn cost(max_rows: usize) -> u64 {
-        // Measured on the paper's data sets: 1000 rows take about a second. Those of `beyond` take two to four times as long.
+        // Measured on the paper's data sets: 1000 rows take about a second. The data sets of `beyond` take two to four times
+        // as long.
         55 * (max_rows as u64).pow(2)
     }
 
-    /// Both, and which of them the data support: the slope GP's and the direct GP's fits are what each alone would be.
+    /// Fits both and selects the one that the data support. The fits are the same as those of each alone.
     ///
     /// # Errors
-    /// If nothing can be learnt from them.
+    /// If the demonstrations do not suffice for learning.
     pub fn both(
         &self,
         demonstrations: &Demonstrations,
@@ -62,7 +64,7 @@ impl Gaussians {
         Ok(learner.fit(&self.rows(demonstrations, held_out)?, rng)?)
     }
 
-    /// The slope GP alone; without a trend its families hold no quadratic potential, which shows what is left where the
+    /// Fits the slope GP alone. Without a trend its families contain no quadratic potential, which shows the error if the
     /// class does not contain the truth.
     pub(crate) fn slope(
         &self,
@@ -86,7 +88,7 @@ impl Gaussians {
     }
 }
 
-/// Rows of the slope GP, of the direct GP and of the choice between them: errors, and what they say of themselves.
+/// Rows of the slope GP, the direct GP and the choice between them: errors and their own estimates.
 pub(crate) fn rows(judge: &Judge<'_>, both: &AutoFit) -> anyhow::Result<[BTreeMap<Measure, f64>; 3]> {
     let [slope, direct, either]: [&dyn LearntPolicy; 3] = [both.slope(), both.direct(), both];
     let [mut slope, mut direct, mut either] = [errors(judge, slope)?, errors(judge, direct)?, errors(judge, either)?];
@@ -97,7 +99,7 @@ pub(crate) fn rows(judge: &Judge<'_>, both: &AutoFit) -> anyhow::Result<[BTreeMa
     Ok([slope, direct, either])
 }
 
-/// What a slope GP expects of itself.
+/// The slope GP's estimates of its error and model.
 pub(crate) fn own_expectations(fit: &SlopeFit) -> BTreeMap<Measure, f64> {
     let report = fit.report();
     BTreeMap::from([
@@ -106,7 +108,7 @@ pub(crate) fn own_expectations(fit: &SlopeFit) -> BTreeMap<Measure, f64> {
     ])
 }
 
-/// What the data are taken for.
+/// The reading of the data.
 pub(crate) fn reading_of(both: &AutoFit) -> BTreeMap<Measure, f64> {
     let readings = [
         (Measure::ReadFree, Hypothesis::Free),
@@ -117,7 +119,7 @@ pub(crate) fn reading_of(both: &AutoFit) -> BTreeMap<Measure, f64> {
     readings.into_iter().map(|(measure, reading)| (measure, percent(both.reading() == reading))).collect()
 }
 
-/// 100 of one data set, or 0: means are shares of the data sets.
+/// 100 or 0 for one data set, so that means are shares of the data sets.
 fn percent(is_so: bool) -> f64 {
     if is_so { 100.0 } else { 0.0 }
 }

@@ -1,4 +1,4 @@
-//! Scores what was learnt from one data set against the truth (A1)–(A4).
+//! Errors of the result on one data set relative to the truth (A1)–(A4).
 
 use align::Aligned;
 use constraints::{NullSpaceProjector, PfaffianConstraint};
@@ -11,14 +11,14 @@ use nalgebra::{DMatrix, DVector, DVectorView};
 pub struct Judge<'a> {
     samples: Vec<SampleIndex>,
     states: DMatrix<f64>,
-    /// Empty where the policy descends none.
+    /// Empty if the policy has no potential.
     potential: DVector<f64>,
     actions: DMatrix<f64>,
     projectors: Vec<&'a NullSpaceProjector>,
 }
 
 impl<'a> Judge<'a> {
-    /// Looks up the truth of samples, which are in ascending order.
+    /// Looks up the truth at these samples, which must be in ascending order.
     pub fn new(recordings: &'a [Recording], samples: &[SampleIndex]) -> Self {
         let truth = || samples.iter().map(|at| (&recordings[at.trajectory].truth, at.sample));
         let columns = |of: fn(&Truth) -> &DMatrix<f64>| {
@@ -33,7 +33,7 @@ impl<'a> Judge<'a> {
         }
     }
 
-    /// The same test at some of the states: variances are then of these alone.
+    /// Restricts the test to some of the states; variances are then over these alone.
     #[must_use]
     pub(crate) fn among(&self, wanted: impl Fn(DVectorView<'_, f64>) -> bool) -> Judge<'a> {
         let chosen: Vec<usize> = (0..self.n_samples()).filter(|&sample| wanted(self.states.column(sample))).collect();
@@ -46,17 +46,17 @@ impl<'a> Judge<'a> {
         }
     }
 
-    /// Whether there is a true potential to compare with.
+    /// Whether there is a true potential for comparison.
     pub(crate) fn has_potential(&self) -> bool {
         !self.potential.is_empty()
     }
 
-    /// What is tested, ascending.
+    /// The test samples, ascending.
     pub(crate) fn samples(&self) -> &[SampleIndex] {
         &self.samples
     }
 
-    /// How many states are tested.
+    /// Number of test states.
     pub(crate) fn n_samples(&self) -> usize {
         self.states.ncols()
     }
@@ -68,7 +68,7 @@ impl<'a> Judge<'a> {
         Ok([nupe(&self.actions, &learnt)?, under_training])
     }
 
-    /// Error of a policy under a constraint that holds at time 0 (A2), seen in the demonstrations or not.
+    /// Error of a policy under a constraint at time 0 (A2), whether or not the demonstrations contain it.
     pub(crate) fn policy_under(&self, policy: &dyn Policy, constraint: &dyn PfaffianConstraint) -> anyhow::Result<f64> {
         let projectors = self.states.column_iter().map(|state| constraint.null_space_projector(state, 0.0));
         let projectors = projectors.collect::<Result<Vec<_>, _>>()?;
@@ -78,14 +78,14 @@ impl<'a> Judge<'a> {
     /// Error of a learnt potential (A3).
     ///
     /// # Errors
-    /// If the true one does not vary, or a value is not finite.
+    /// If the true potential does not vary, or a value is not finite.
     pub fn potential(&self, potential: &dyn Potential) -> anyhow::Result<f64> {
         let values = self.states.column_iter().map(|state| potential.value(state));
         let learnt = DVector::from_iterator(self.n_samples(), values);
         Ok(potential_nmse(&self.potential, &learnt)?)
     }
 
-    /// Error of the aligned local potentials (A4); all samples are of trajectories that are kept.
+    /// Error of the aligned local potentials (A4). All test samples must be of kept trajectories.
     ///
     /// # Errors
     /// As [`Judge::potential`].
@@ -111,7 +111,7 @@ mod tests {
 
     use super::*;
 
-    /// Tested on two movements alone, the judge gives what the measures give for the truth of these.
+    /// Tested on two movements alone, the judge gives the same errors as the measures on the truth of these.
     #[test]
     fn a_part_of_the_test_samples_is_judged_by_its_own_variance() {
         let system = ToySystem { n_trajectories: 6, ..ToySystem::default() };

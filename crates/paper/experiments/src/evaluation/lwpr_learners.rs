@@ -1,4 +1,4 @@
-//! The learners that regress by LWPR, with one regression's settings.
+//! The learners that use LWPR, with the settings of one regression.
 
 use std::collections::BTreeMap;
 
@@ -10,7 +10,7 @@ use crate::evaluation::judge::Judge;
 use crate::evaluation::protocol::errors;
 use crate::measure::Measure;
 
-/// What direct policy learning makes of all samples.
+/// Direct policy learning from all samples.
 pub(crate) fn naive(
     lwpr: &LwprRegressor,
     demonstrations: &Demonstrations,
@@ -20,7 +20,7 @@ pub(crate) fn naive(
     naive.learn(demonstrations, &[], rng).map_err(anyhow::Error::from_boxed)
 }
 
-/// Errors of PolicyAlign; none where it does not align enough to learn from.
+/// Errors of PolicyAlign; `None` if it does not align enough movements to learn from.
 pub(crate) fn aligned(
     algorithm: &PolicyAlign,
     lwpr: &LwprRegressor,

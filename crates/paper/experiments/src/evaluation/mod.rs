@@ -1,4 +1,4 @@
-//! How learners are compared: the same recordings, the same held-out samples, the same errors.
+//! Comparison of learners on the same recordings, held-out samples and errors.
 
 pub(crate) mod baselines;
 pub(crate) mod candidate;

@@ -1,4 +1,4 @@
-//! What an observer records of a movement, and how each learner is to take it.
+//! The recorded quantities of a movement, and how each learner uses them.
 
 use align::Integration;
 use demo_gen::{Recording, with_position_noise};
@@ -8,19 +8,19 @@ use rand_chacha::ChaCha8Rng;
 use serde::Serialize;
 use smoothing::{Fusion, Smoother};
 
-/// What is recorded. Noise is a share of each dimension's standard deviation.
+/// The recorded quantities. Noise is relative to each dimension's standard deviation.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub(crate) enum ObservationModel {
     /// Positions and velocities, both exact.
     Velocities,
     /// Positions with noise, and exact velocities.
     NoisyStates(f64),
-    /// Positions with noise, and nothing else.
+    /// Positions with noise, without velocities.
     Positions(f64),
 }
 
 impl ObservationModel {
-    /// The same movements as they are recorded.
+    /// Converts movements to their recordings.
     pub(crate) fn of(self, recordings: Vec<Recording>, rng: &mut ChaCha8Rng) -> anyhow::Result<Vec<Recording>> {
         match self {
             ObservationModel::Velocities => Ok(recordings),
@@ -32,7 +32,7 @@ impl ObservationModel {
         }
     }
 
-    /// How the Gaussian processes take it.
+    /// How the Gaussian processes use it.
     pub(crate) fn front_end(self) -> FrontEnd {
         match self {
             ObservationModel::Velocities => FrontEnd::Velocities,
@@ -41,7 +41,7 @@ impl ObservationModel {
         }
     }
 
-    /// How PolicyAlign takes it.
+    /// How PolicyAlign uses it.
     pub(crate) fn integration(self) -> Integration {
         match self {
             ObservationModel::Velocities | ObservationModel::NoisyStates(_) => Integration::Velocity,

@@ -1,4 +1,4 @@
-//! An evaluation: every candidate gets the same recordings and the same samples held out of them, and is judged by the same truth.
+//! Evaluation of learners: every candidate gets the same recordings and held-out samples, and is compared with the same truth.
 
 use std::collections::BTreeMap;
 
@@ -15,19 +15,19 @@ use crate::evaluation::judge::Judge;
 use crate::evaluation::test_samples::TestSamples;
 use crate::measure::Measure;
 
-/// What an evaluation tests on.
+/// Description of the test samples.
 pub(crate) const TESTED_ON: &str =
     "held-out samples of the movements that alignment keeps; measures named _all: of all movements";
 
-/// What was learnt, and those who judge it.
+/// The trained learners, and the judges of their errors.
 pub(crate) struct Evaluation<'a> {
     aligned: Aligned,
-    /// On samples of the movements that alignment keeps, and of all.
+    /// On samples of the movements that alignment keeps, and of all movements.
     judges: [Judge<'a>; 2],
     learnt: Vec<Box<dyn LearntPolicy>>,
 }
 
-/// Errors of what was learnt: of its policy, and of its potential where there are two to compare.
+/// Errors of the learnt policy, and of its potential if it and the truth have one.
 pub(crate) fn errors(judge: &Judge<'_>, learnt: &dyn LearntPolicy) -> anyhow::Result<BTreeMap<Measure, f64>> {
     let [nupe, ncpe] = judge.policy(&learnt)?;
     let mut errors = BTreeMap::from([(Measure::Nupe, nupe), (Measure::Ncpe, ncpe)]);
@@ -37,18 +37,18 @@ pub(crate) fn errors(judge: &Judge<'_>, learnt: &dyn LearntPolicy) -> anyhow::Re
     Ok(errors)
 }
 
-/// Who is evaluated, and on what share of the samples.
+/// The evaluated learners, and the share of held-out samples.
 #[derive(Serialize)]
 pub(crate) struct Protocol {
     pub(crate) algorithm: PolicyAlign,
     #[serde(rename = "pupils")]
     pub(crate) candidates: Vec<Candidate>,
-    /// Share of the samples that is held out.
+    /// Share of held-out samples.
     pub(crate) held_out: f64,
 }
 
 impl Protocol {
-    /// Aligns the recordings, draws what is held out, and lets each learner learn.
+    /// Aligns the recordings, draws the held-out samples and trains each learner.
     pub(crate) fn evaluate<'a>(
         &self,
         recordings: &'a [Recording],
@@ -66,18 +66,18 @@ impl Protocol {
 }
 
 impl<'a> Evaluation<'a> {
-    /// What each learner found, in their order.
+    /// The learnt policies, in the order of the candidates.
     pub(crate) fn learnt(&self) -> impl Iterator<Item = &dyn LearntPolicy> {
         self.learnt.iter().map(|learnt| &**learnt)
     }
 
-    /// Who judges on the samples of kept movements.
+    /// The judge on samples of kept movements.
     pub(crate) fn judge(&self) -> &Judge<'a> {
         &self.judges[0]
     }
 
-    /// A row for each learner, in their order: its errors on samples of kept movements, and those of its policy on
-    /// samples of all.
+    /// A row for each learner, in order: its errors on samples of kept movements, and its policy's errors on samples of all
+    /// movements.
     pub(crate) fn rows(&self) -> anyhow::Result<Measures> {
         let row = |learnt: &dyn LearntPolicy| {
             let mut row = self.errors(self.judge(), learnt)?;
@@ -93,15 +93,15 @@ impl<'a> Evaluation<'a> {
         self.learnt().map(row).collect()
     }
 
-    /// Error of a policy under a constraint that holds at time 0 and in no recording: on samples of kept movements, and
-    /// of all.
+    /// Error of a policy under a constraint at time 0 that no recording contains: on samples of kept movements, and of all
+    /// movements.
     pub(crate) fn unseen(&self, policy: &dyn Policy, constraint: &dyn PfaffianConstraint) -> anyhow::Result<[f64; 2]> {
         let [kept, all] = self.judges.each_ref().map(|judge| judge.policy_under(policy, constraint));
         Ok([kept?, all?])
     }
 
-    /// Errors of what was learnt before a judge on samples of kept movements: of its potential too, if it has one, and
-    /// of the alignment, if it rests on that.
+    /// Errors on samples of kept movements. They include those of the potential if the learner has one, and of the alignment if
+    /// the learner uses it.
     pub(crate) fn errors(
         &self,
         judge: &Judge<'_>,
@@ -114,7 +114,7 @@ impl<'a> Evaluation<'a> {
         Ok(errors)
     }
 
-    /// Share of the test samples, as they were observed, of which the demonstrations say nothing.
+    /// Share of the test samples, as observed, in regions without support from the demonstrations.
     fn unsupported_percent(&self, learnt: &dyn LearntPolicy) -> f64 {
         let trajectories = self.aligned.demonstrations().trajectories();
         let samples = self.judge().samples();
@@ -147,7 +147,7 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(4))]
 
-        /// The truth of other movements changes every mark and no bit of what is learnt.
+        /// Other true movements change every error, but not a single bit of the learnt policies.
         #[test]
         fn the_truth_is_for_the_judge_alone(seed in 1_u64..1000, forger in 1000_u64..2000, samples in 20_usize..40, held_out in 0.05..0.5) {
             let record = |potential, seed| {

@@ -1,4 +1,4 @@
-//! How every experiment learns and tests: one regression, LWPR with its library's defaults, and one share of samples held out.
+//! The common method of all experiments: one regression, LWPR with its library's defaults, and one share of held-out samples.
 
 use align::{DirectPolicyLearning, LwprRegressor, PolicyAlign};
 use lwpr::LwprParams;
@@ -9,18 +9,18 @@ use crate::evaluation::candidate::Candidate;
 use crate::evaluation::protocol::Protocol;
 use crate::setting::{Class, SILENT, Setting};
 
-/// What the learners of an experiment have in common.
+/// The common settings of an experiment's learners.
 #[derive(Debug, Clone)]
 pub(crate) struct Recipe {
-    /// LWPR's parameters without divisors; the library's defaults.
+    /// LWPR's parameters without divisors: the library's defaults.
     pub(crate) params: LwprParams,
-    /// What potentials are divided by before LWPR learns them: 1, as (23) has them.
+    /// Divisor of potentials before LWPR learns them: 1, as in (23).
     pub(crate) divisor: f64,
-    /// How often all samples are learnt, for each input: a receptive field of n inputs predicts only after 2n samples.
+    /// Passes over all samples per input dimension, because a receptive field with n inputs predicts only after 2n samples.
     pub(crate) passes_per_input: f64,
-    /// Receptive fields that a state activates less take no part in its prediction.
+    /// Receptive fields with a smaller activation do not contribute to a prediction.
     pub(crate) cutoff: f64,
-    /// Share of the samples that is held out for tests.
+    /// Share of samples that are held out for tests.
     pub(crate) held_out: f64,
 }
 
@@ -30,11 +30,11 @@ impl Default for Recipe {
     }
 }
 
-/// Share of the samples that is held out.
+/// Share of held-out samples.
 pub const HELD_OUT: f64 = 0.2;
 
 impl Recipe {
-    /// The regression on aligned potentials of `dim` inputs, all divided by `spread`.
+    /// The regression on aligned potentials with `dim` inputs, all divided by `spread`.
     pub(crate) fn regressor(&self, dim: usize, spread: f64) -> LwprRegressor {
         self.lwpr(dim, spread, 1)
     }
@@ -44,7 +44,7 @@ impl Recipe {
         DirectPolicyLearning { regressor: self.lwpr(dim, spread, dim) }
     }
 
-    /// PolicyAlign alone, with this regression; other learners are added to it.
+    /// PolicyAlign alone, with this regression; other learners can be added.
     pub(crate) fn protocol(&self, algorithm: PolicyAlign, dim: usize, spread: f64) -> Protocol {
         let candidates = vec![Candidate::PolicyAlign(self.regressor(dim, spread))];
         Protocol { algorithm, candidates, held_out: self.held_out }
@@ -54,7 +54,7 @@ impl Recipe {
         (self.passes_per_input * dim as f64).ceil() as usize
     }
 
-    /// A regression of `n_out` outputs.
+    /// A regression with `n_out` outputs.
     fn lwpr(&self, dim: usize, spread: f64, n_out: usize) -> LwprRegressor {
         let [norm_in, norm_out] =
             [(dim, spread), (n_out, self.divisor)].map(|(n, norm)| Some(DVector::repeat(n, norm)));
@@ -62,7 +62,7 @@ impl Recipe {
         LwprRegressor { params, passes: self.passes(dim), cutoff: self.cutoff }
     }
 
-    /// What is fitted of it, as settings of an experiment whose printed rows are `printed`.
+    /// The fitted values of the recipe, as settings of an experiment whose printed rows are `printed`.
     pub(crate) fn settings(
         &self,
         experiment: &'static str,

@@ -1,4 +1,4 @@
-//! Samples that no learner sees, so that all can be tested on them.
+//! Test samples, which no learner sees, so that all can be tested on them.
 
 use align::Aligned;
 use demo_gen::Recording;
@@ -8,25 +8,25 @@ use rand_chacha::ChaCha8Rng;
 use crate::evaluation::judge::Judge;
 use crate::seed::separate_stream;
 
-/// The samples of one data set that are held out, ascending.
+/// The held-out samples of one data set, ascending.
 pub struct TestSamples {
     /// Of the trajectories that alignment keeps.
     pub of_kept: Vec<SampleIndex>,
-    /// Of all trajectories: the same and the same share of the samples of the discarded ones.
+    /// Of all trajectories: the same samples, and the same share of samples of the discarded trajectories.
     pub of_all: Vec<SampleIndex>,
 }
 
 impl TestSamples {
-    /// Who judges on the samples of kept movements, and on those of all.
+    /// The judges on samples of kept movements, and of all movements.
     pub(crate) fn judges<'a>(&self, recordings: &'a [Recording]) -> [Judge<'a>; 2] {
         [&self.of_kept, &self.of_all].map(|samples| Judge::new(recordings, samples))
     }
 
-    /// Draws a share of the samples, in (0, 1). Those of discarded trajectories come from a stream of their own, so that they change none of the
-    /// random numbers that learning goes on with.
+    /// Draws a share of the samples, in (0, 1). Those of discarded trajectories come from a separate random stream, so that they do
+    /// not change the random numbers that learning uses afterwards.
     ///
     /// # Errors
-    /// If there is nothing to draw from.
+    /// If there are no samples to draw from.
     pub fn draw(aligned: &Aligned, share: f64, rng: &mut ChaCha8Rng) -> anyhow::Result<TestSamples> {
         let demonstrations = aligned.demonstrations();
         let of_kept = demonstrations.hold_out_samples(aligned.kept(), share, rng)?;
@@ -60,7 +60,7 @@ mod tests {
         let is_kept = |at: &&SampleIndex| aligned.kept().contains(&at.trajectory);
         assert!(of_all.is_sorted() && of_all.iter().filter(is_kept).eq(&of_kept));
 
-        // The kept ones alone leave the generator where both together do.
+        // Drawing only the samples of kept trajectories leaves the generator in the same state.
         let mut other = generator(1, 0, 3);
         assert_eq!(aligned.demonstrations().hold_out_samples(aligned.kept(), 0.1, &mut other).unwrap(), of_kept);
         assert_eq!(rng.next_u64(), other.next_u64());

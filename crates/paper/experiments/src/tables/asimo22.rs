@@ -19,10 +19,10 @@ use crate::{Experiment, Measures, Row, Setup, Trial};
 /// The system whose random stream is used.
 const BODY_SYSTEM: u32 = 430;
 
-/// Its only row of the paper.
+/// The id of its only row in the paper.
 const ROW: &str = "policy_align";
 
-/// What its rows of other learners are named after.
+/// The prefix of the rows of other learners.
 const CASE: &str = "body";
 
 /// The experiment.
@@ -56,19 +56,19 @@ pub(crate) fn asimo22() -> anyhow::Result<Experiment> {
     })
 }
 
-/// Who learns beside PolicyAlign. The naive learner has wider fields than PolicyAlign, with which its error is lower, and fewer
-/// passes.
+/// The learners other than PolicyAlign. The naive learner has wider receptive fields than PolicyAlign, which reduce its error,
+/// and fewer passes.
 fn baselines() -> Baselines {
     let regressor = LwprRegressor { passes: 3, ..Recipe::default().naive(22, 2.2).regressor };
     let naive = Some(DirectPolicyLearning { regressor });
     Baselines { naive, ..Baselines::of_gaussians(FrontEnd::FiniteDifferences, 1000) }
 }
 
-/// What PolicyAlign's inputs are divided by.
+/// Divisor of PolicyAlign's inputs.
 const SPREAD: f64 = 0.8;
 
-/// Below this activation, a power of ten, receptive fields take no part in a prediction: hardly any, since starts that are far
-/// from all others have no other.
+/// Receptive fields with an activation below this power of ten do not contribute to a prediction. It excludes hardly any,
+/// because starts far from all others have no better ones.
 const CUTOFF: f64 = -15.0;
 
 fn recipe() -> Recipe {
@@ -81,7 +81,7 @@ fn printed(scenario: HandInPlane, spread: f64, recipe: &Recipe) -> Setup {
     Setup::new(ROW, BODY_SYSTEM, 85_000_000, vec![Row::of_learner(ROW)], BodyTrial { scenario, protocol })
 }
 
-/// Where its numbers come from.
+/// The settings, with their origin.
 pub(crate) fn settings() -> Vec<Setting> {
     let setting = |name, used, change: fn(&mut HandInPlane, f64)| {
         Setting::new("asimo22", name, Class::Fitted, SILENT, used, move |value| {

@@ -1,4 +1,4 @@
-//! Beyond the paper: movements that tell learners apart where the paper's no longer do.
+//! Beyond the paper: movements that distinguish learners where the paper's no longer do.
 
 use std::collections::BTreeMap;
 
@@ -21,26 +21,26 @@ use crate::measure::{Measure, RowOf};
 use crate::seed::separate_stream;
 use crate::{Experiment, Measures, Row, Setup, Trial};
 
-/// The first of the systems; the cases follow.
+/// The system of the first case; the others follow.
 const FIRST_SYSTEM: u32 = 500;
 
-/// What its rows test on.
+/// Description of the test samples.
 const TESTED_ON: &str = "the true states of all samples";
 
-/// Who learns, in the order of the rows.
+/// The learners, in the order of the rows.
 const WHO: [Method; 6] =
     [Method::Naive, Method::PolicyAlign, Method::SlopeGp, Method::SlopeGpNoTrend, Method::DirectGp, Method::AutoGp];
 
-/// One data set's kind.
+/// A kind of data set.
 struct Case {
     name: &'static str,
     system: BeyondSystem,
     observation: ObservationModel,
-    /// Rows that the Gaussian processes learn from.
+    /// Number of rows from which the Gaussian processes learn.
     max_rows: usize,
 }
 
-/// In the order of the table; new ones last, since each has its own random numbers.
+/// The cases in the order of the table. New ones must be last, because the position determines the random numbers.
 fn cases() -> Vec<Case> {
     use ConstraintKind::{Free, OneForAll, Varying};
     use ObservationModel::{NoisyStates, Positions, Velocities};
@@ -95,7 +95,7 @@ pub(crate) fn beyond() -> Experiment {
     }
 }
 
-/// A case that can be drawn: its system, by its number, and what learns from it.
+/// A planar case for figures: the number of its system, the system, and the Gaussian processes.
 pub fn case_on_the_plane() -> (u32, BeyondSystem, Gaussians) {
     let case = cases().swap_remove(0);
     let gaussians = case.gaussians();
@@ -107,9 +107,9 @@ impl Case {
         Gaussians::new(self.observation.front_end(), self.max_rows)
     }
 
-    /// LWPR as it comes, but in 22 dimensions: states are so far apart there that fields of the default width hold hardly
-    /// more than their own sample. Wider ones are better for both its learners (the table in docs/decisions/beyond.md)
-    /// and need a fortieth of the time.
+    /// LWPR with its defaults, except in 22 dimensions. There states are so far apart that fields of the default width
+    /// contain hardly more than one sample. Wider fields improve both LWPR learners (the table in
+    /// docs/decisions/beyond.md) and take a fortieth of the time.
     fn lwpr(&self) -> LwprRegressor {
         let regressor = LwprRegressor::default();
         if self.system.policy.dim() < 22 {
@@ -156,7 +156,7 @@ impl Trial for BeyondTrial {
 }
 
 impl BeyondTrial {
-    /// The better of two bandwidths; nothing where neither aligns enough to learn from.
+    /// The better result of two bandwidths; empty if neither aligns enough movements to learn from.
     fn policy_align(
         &self,
         demonstrations: &Demonstrations,
@@ -178,7 +178,7 @@ mod tests {
     use super::*;
     use crate::seed::generator;
 
-    /// Of ten movements under constraints the slope GP makes what nobody else does; and every row has its errors.
+    /// From ten constrained movements only the slope GP recovers the policy; every row has its errors.
     #[test]
     fn a_case_has_an_error_of_everybody() {
         let setup = beyond().setups.swap_remove(0);

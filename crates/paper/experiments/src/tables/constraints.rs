@@ -1,4 +1,4 @@
-//! Beyond the paper: constraints with a task, A u = b, as later work on the same problem has them.
+//! Beyond the paper: constraints with a task, A u = b, as in later work on the same problem.
 
 use std::collections::BTreeMap;
 
@@ -21,33 +21,33 @@ use crate::robots::seven_joint_arm;
 use crate::seed::{fresh, separate_stream};
 use crate::{Experiment, Measures, Row, Setup, Trial};
 
-/// The first of the systems; the generators follow, each with the same data sets whatever the noise.
+/// The system of the first generator; the others follow. The noise does not change a generator's data sets.
 const FIRST_SYSTEM: u32 = 700;
 
-/// What its rows test on.
+/// Description of the test samples.
 const TESTED_ON: &str = "the true states of ten movements from new starts";
 
-/// Movements tested on.
+/// Number of test movements.
 const FRESH: usize = 10;
 
-/// Rows that the Gaussian processes learn from, as in the program.
+/// Number of rows from which the Gaussian processes learn, as in the program.
 const MAX_ROWS: usize = 400;
 
-/// Who learns, in the order of the rows.
+/// The learners, in the order of the rows.
 const WHO: [Method; 6] =
     [Method::Naive, Method::PolicyAlign, Method::SlopeGp, Method::SlopeGpPushed, Method::DirectGp, Method::AutoGp];
 
-/// Signal-to-noise ratios of the velocities, in decibels, and what they are called; none is exact.
+/// Signal-to-noise ratios of the velocities, in decibels, with their names; `None` for exact velocities.
 const NOISE: [(&str, Option<f64>); 3] = [("", None), ("-40-db", Some(40.0)), ("-20-db", Some(20.0))];
 
-/// Who moves under which constraints.
+/// A system with its constraints.
 #[derive(Serialize)]
 enum Generator {
     Cycles(CyclesWithTask),
     Wiping(Box<Wiping>),
 }
 
-/// In the order of the table; new ones last, since each has its own random numbers.
+/// The generators in the order of the table. New ones must be last, because the position determines the random numbers.
 fn generators() -> anyhow::Result<Vec<(&'static str, Generator)>> {
     let cycles = |largest_task| Generator::Cycles(CyclesWithTask { largest_task, ..CyclesWithTask::default() });
     let wiping = |contact| anyhow::Ok(Generator::Wiping(Box::new(seven_joint_arm(contact)?)));
@@ -67,7 +67,7 @@ impl Generator {
         })
     }
 
-    /// Movements that nobody learns from, which take nothing from the generator of their data set.
+    /// Test movements, which no learner sees. They do not advance the generator of the data set.
     fn fresh(&self, rng: &ChaCha8Rng) -> anyhow::Result<Vec<Recording>> {
         let mut rng = fresh(rng);
         Ok(match self {
@@ -114,7 +114,7 @@ fn setup(number: u32, name: &str, generator: Generator, decibels: Option<f64>) -
     Setup::new(name, number, 60_000_000, WHO.map(row).into(), trial)
 }
 
-/// LWPR as it comes but in two passes: of 5,000 samples ten are only slower.
+/// LWPR with its defaults, except for two passes: ten passes over 5,000 samples only take longer.
 fn lwpr() -> LwprRegressor {
     LwprRegressor { passes: 2, ..LwprRegressor::default() }
 }
@@ -122,7 +122,7 @@ fn lwpr() -> LwprRegressor {
 #[derive(Serialize)]
 struct ConstraintsTrial {
     generator: Generator,
-    /// Ratio of signal to noise of the velocities; none where they are exact.
+    /// Signal-to-noise ratio of the velocities in decibels; `None` if they are exact.
     decibels: Option<f64>,
     lwpr: LwprRegressor,
     max_rows: usize,
@@ -148,7 +148,8 @@ impl Trial for ConstraintsTrial {
 }
 
 impl ConstraintsTrial {
-    /// Errors of the slope GP on rows of samples, of the one that may learn from stretches, of the direct GP and of the choice between the last two.
+    /// Errors of the slope GP on rows of samples, of the slope GP that may learn from stretches, of the direct GP, and of the choice
+    /// between the last two.
     fn gaussians(
         &self,
         demonstrations: &Demonstrations,
@@ -171,7 +172,7 @@ mod tests {
     use super::*;
     use crate::seed::generator;
 
-    /// Under A u = b only the slope GP that learns from stretches finds the policy; and every row has its errors.
+    /// Under A u = b only the slope GP that learns from stretches recovers the policy; every row has its errors.
     #[test]
     fn a_task_is_seen_through_by_stretches_alone() {
         let setup = constraints().unwrap().setups.swap_remove(1);

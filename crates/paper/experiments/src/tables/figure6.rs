@@ -16,16 +16,16 @@ use crate::measure::Measure;
 use crate::tables::table1::{PARABOLA_SYSTEM, learning_cost, toy_baselines, toy_protocol};
 use crate::{Experiment, Measures, Row, Setup, Trial};
 
-/// What is learnt from, percent of the trajectories.
+/// Amounts of training data, percent of the trajectories.
 pub const TRAJECTORIES_PERCENT: [f64; 6] = [10.0, 20.0, 40.0, 60.0, 80.0, 100.0];
 
-/// Noise, percent of each dimension's standard deviation.
+/// Noise levels, percent of each dimension's standard deviation.
 pub const NOISE_PERCENT: [f64; 6] = [0.0, 2.5, 5.0, 10.0, 15.0, 20.0];
 
-/// Names in rows.
+/// Bandwidths, with their names in rows.
 pub const BANDWIDTHS: [(&str, Bandwidth); 2] = [("narrow", Bandwidth::Narrow), ("medium", Bandwidth::Medium)];
 
-/// Names in rows.
+/// Integration rules, with their names in rows.
 pub const RULES: [(&str, Integration); 2] =
     [("velocity", Integration::Velocity), ("displacement", Integration::Displacement)];
 
@@ -56,7 +56,7 @@ pub(crate) fn figure6_left() -> Experiment {
     }
 }
 
-/// The right panel: errors against noise, by two rules of integration.
+/// The right panel: errors against noise, with two rules of integration.
 pub(crate) fn figure6_right() -> Experiment {
     let setup = |(rule, integration): (&str, Integration), (name, bandwidth): (&str, Bandwidth)| {
         let algorithm = PolicyAlign { integration, bandwidth, ..PolicyAlign::default() };
@@ -90,15 +90,15 @@ pub(crate) fn figure6_right() -> Experiment {
     }
 }
 
-/// Cases of the baselines.
+/// The baselines' cases in the left panel.
 pub const BASELINES_LEFT: &str = "map";
-/// In the order of [`RULES`].
+/// The baselines' cases in the right panel, in the order of [`RULES`].
 pub const BASELINES_RIGHT: [&str; 2] = ["fused", "smoothed"];
 
-/// Rows that the Gaussian processes learn from.
+/// Number of rows from which the Gaussian processes learn.
 const ROWS: usize = 500;
 
-/// A line of the table: of the baselines, and of PolicyAlign by another name.
+/// A line of the table: the errors of the baselines, and of PolicyAlign, whose row has another name.
 fn comparison(case: &str, policy_align: &str, percent: f64) -> Comparison {
     let methods = toy_baselines(FrontEnd::FiniteDifferences, ROWS).methods();
     let row = format!("{policy_align}-{percent}");
@@ -123,7 +123,7 @@ fn baseline_setup(
     Setup { cost: setup.cost * percent.len() as u64, ..setup }
 }
 
-/// What both panels share.
+/// Common properties of both panels.
 fn curves() -> Experiment {
     Experiment { section: "4.1", data_sets: 20, decisions: "figure6.md", ..Experiment::default() }
 }
@@ -137,7 +137,7 @@ fn setup(id: &str, percent: &[f64], algorithm: PolicyAlign, against: Against) ->
     Setup::new(id, PARABOLA_SYSTEM, cost, rows, trial)
 }
 
-/// What changes along a curve.
+/// The quantity that varies along a curve.
 #[derive(Debug, Clone, Copy, Serialize)]
 enum Against {
     Trajectories,
@@ -149,7 +149,7 @@ enum Against {
 struct CurveTrial {
     system: ToySystem,
     protocol: Protocol,
-    /// Who learns instead of the candidates, if anybody does.
+    /// Baselines that learn instead of the candidates, if any.
     #[serde(rename = "beside")]
     baselines: Option<Baselines>,
     against: Against,
@@ -165,7 +165,7 @@ impl CurveTrial {
         }
     }
 
-    /// What is measured at one point.
+    /// The measures at one point.
     fn point(&self, observed: &[Recording], rng: &mut ChaCha8Rng) -> anyhow::Result<Measures> {
         match &self.baselines {
             Some(baselines) => baselines.train(observed, std::slice::from_ref(&self.protocol.algorithm), rng)?.rows(),
@@ -182,8 +182,8 @@ impl CurveTrial {
 }
 
 impl Trial for CurveTrial {
-    /// Every point starts from the same random numbers, so that a curve shows what it is against and nothing else, and
-    /// where nothing is changed it shows Table 1's own figures.
+    /// Every point starts from the same random numbers, so that a curve shows only the effect of the varied quantity.
+    /// Without a change, a point equals Table 1's own result.
     fn run(&self, rng: &mut ChaCha8Rng) -> anyhow::Result<Measures> {
         let recordings = self.system.record(rng)?;
         let learning = rng.clone();
@@ -214,7 +214,7 @@ mod tests {
     #[test]
     fn where_nothing_is_changed_the_curves_show_table_1() {
         let mut table = run(&table1().unwrap(), "parabola-40x40-medium").remove(0);
-        // Only the table has movements that nobody learns from.
+        // Only the table has test movements that no learner sees.
         assert!(table.remove(&Measure::NupeFresh).is_some());
         let [left, right] = [run(&figure6_left(), "medium"), run(&figure6_right(), "displacement-medium")];
         assert_eq!(left.last(), Some(&table));

@@ -20,10 +20,10 @@ use crate::{Experiment, Measures, Row, Setup, Trial};
 /// Bounds on the distance, in tenths of a radian.
 pub const TENTHS: std::ops::RangeInclusive<u32> = 1..=10;
 
-/// Fewer test samples than this give no value: the variance that errors are divided by would be chance.
+/// Fewer test samples give no value, because the variance in the denominator of the error would be due to chance.
 const FEWEST_SAMPLES: usize = 10;
 
-/// What its rows test on.
+/// Description of the test samples.
 const TESTED_ON: &str = "held-out samples of the movements that alignment keeps, of these the ones in the distance";
 
 /// The experiment.
@@ -51,15 +51,15 @@ pub(crate) fn figure9() -> anyhow::Result<Experiment> {
     })
 }
 
-/// Rows that the Gaussian processes learn from: the arm's table, with all of them, shows the same errors.
+/// Number of rows from which the Gaussian processes learn. The arm's table, which uses all rows, shows the same errors.
 const ROWS: usize = 500;
 
-/// What is tested on, in the order of the rows.
+/// The cases, in the order of the rows.
 fn cases() -> Vec<String> {
     bounds().map(|(distance, tenths)| distance.row(tenths)).collect()
 }
 
-/// How far a posture is from the one that the policy aims at, in two parts.
+/// The two components of the distance between a posture and the target of the policy.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Distance {
     /// d = |q·l|.
@@ -69,7 +69,7 @@ pub enum Distance {
 }
 
 impl Distance {
-    /// In the order of the rows.
+    /// Both, in the order of the rows.
     pub const BOTH: [Distance; 2] = [Distance::Along, Distance::Around];
 
     /// Its letter in the paper.
@@ -80,12 +80,12 @@ impl Distance {
         }
     }
 
-    /// The row of the samples nearer than so many tenths.
+    /// The id of the row for samples within this many tenths.
     pub fn row(self, tenths: u32) -> String {
         format!("{}-{}.{}", self.letter(), tenths / 10, tenths % 10)
     }
 
-    /// Of a posture, in radians.
+    /// The distance of a posture, in radians.
     pub(crate) fn of(self, posture: DVectorView<'_, f64>) -> f64 {
         let along = posture.fixed_rows::<3>(0).dot(&line());
         match self {
@@ -95,8 +95,8 @@ impl Distance {
     }
 }
 
-/// The direction l of the line through 0 where movements end: at the stretched posture the hand is 3, 2 and 1 links away
-/// from the joints, so that every constraint that holds there at all holds q₁, q₂, q₃ back along (3, 2, 1).
+/// The direction l of the line through 0 where movements end. At the stretched posture the hand is 3, 2 and 1 links away
+/// from the joints, so that every active constraint there blocks q₁, q₂, q₃ along (3, 2, 1).
 pub fn line() -> Vector3<f64> {
     Vector3::new(3.0, 2.0, 1.0).normalize()
 }
@@ -121,7 +121,7 @@ impl Trial for DistanceTrial {
     }
 }
 
-/// The same of the baselines.
+/// The same for the baselines.
 #[derive(Serialize)]
 struct DistanceBaselines {
     arm: ThreeLinkArm,
@@ -150,7 +150,7 @@ fn bounds() -> impl Iterator<Item = (Distance, u32)> {
     Distance::BOTH.into_iter().flat_map(|distance| TENTHS.map(move |tenths| (distance, tenths)))
 }
 
-/// The test at the samples within a bound; none where there are too few.
+/// The test at the samples within a bound; `None` if there are too few.
 fn within<'a>(judge: &Judge<'a>, (distance, tenths): (Distance, u32)) -> Option<Judge<'a>> {
     let judge = judge.among(|state| distance.of(state) < f64::from(tenths) / 10.0);
     (judge.n_samples() >= FEWEST_SAMPLES).then_some(judge)

@@ -1,4 +1,4 @@
-//! The experiments, a file for each table or figure.
+//! The experiments, one file for each table or figure.
 
 pub(crate) mod asimo22;
 pub(crate) mod beyond;

@@ -1,4 +1,4 @@
-//! How free, constrained and other movements are read, and what each policy is worth there.
+//! Readings of free, constrained and other movements, and the error of each policy.
 
 use demo_gen::beyond::{BeyondSystem, ConstraintKind, PolicyKind};
 use demo_gen::demonstrations;
@@ -13,25 +13,25 @@ use crate::measure::{Measure, RowOf};
 use crate::seed::separate_stream;
 use crate::{Experiment, Measures, Row, Setup, Trial};
 
-/// The first of the systems; the kinds follow.
+/// The system of the first kind; the others follow.
 const FIRST_SYSTEM: u32 = 600;
 
-/// What its rows test on.
+/// Description of the test samples.
 const TESTED_ON: &str = "the true states of all samples; handwriting: of two movements that were not learnt from";
 
-/// Who learns.
+/// The learners.
 const METHODS: [Method; 3] = [Method::SlopeGp, Method::DirectGp, Method::AutoGp];
 
-/// Movements of one kind.
+/// A kind of movements.
 struct Kind {
     name: &'static str,
     system: BeyondSystem,
-    /// Trajectories at the end that are not learnt from but tested on.
+    /// Number of trajectories at the end that are held out for testing.
     held_out: usize,
     data_sets: Option<u32>,
 }
 
-/// In the order of the table; new ones last, since each has its own random numbers.
+/// The kinds in the order of the table. New ones must be last, because the position determines the random numbers.
 fn kinds() -> Vec<Kind> {
     use ConstraintKind::{Free, HalfFree, OneForAll, Varying};
     use PolicyKind::{Handwriting, LimitCycle, Planes, Sinusoidal, Swirl, Wells};

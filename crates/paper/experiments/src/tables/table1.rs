@@ -1,4 +1,4 @@
-//! Table 1 (Section 4.1): the toy system, three set-ups by three bandwidths.
+//! Table 1 (Section 4.1): the toy system, with three set-ups and three bandwidths.
 
 use align::{Bandwidth, DirectPolicyLearning, LwprRegressor, PolicyAlign};
 use demo_gen::{Redraw, ToyPotential, ToySystem};
@@ -17,14 +17,14 @@ use crate::paper::{explanations, paper_table};
 use crate::setting::{Class, SILENT, Setting};
 use crate::{Experiment, Measures, Row, Setup, Trial};
 
-/// The systems of the table, by their random streams; those of the literal reading follow from 100. The parabola.
+/// The parabola's system number, which selects its random stream; those of the literal reading start at 100.
 pub const PARABOLA_SYSTEM: u32 = 0;
-/// The sinusoid.
+/// The sinusoid's system number.
 pub const SINUSOIDAL_SYSTEM: u32 = 1;
 const LONG_SINUSOIDAL_SYSTEM: u32 = 2;
 const LITERAL: u32 = 100;
 
-/// The table with constraints that are drawn anew every 20 samples.
+/// The table with constraints that are redrawn every 20 samples.
 pub(crate) fn table1() -> anyhow::Result<Experiment> {
     Ok(Experiment {
         id: "table1",
@@ -64,31 +64,32 @@ pub(crate) fn table1_literal() -> anyhow::Result<Experiment> {
     })
 }
 
-/// Samples after which the constraint is drawn anew.
+/// Number of samples after which the constraint is redrawn.
 const REDRAW: usize = 20;
 
 const RESERVATIONS: [&str; 1] = [
     "Section 4.1 calls the error of alignment \"only marginally different\" from the potential's. Here they differ by up to a factor of two.",
 ];
 
-/// What is the same in three rows, and why.
+/// Explains why three rows agree for some learners.
 const BANDWIDTH_IS_OF_POLICY_ALIGN: &str = "The bandwidth (narrow, medium, wide) is PolicyAlign's: it discards movements by it. The others \
                                             learn from all movements, the same in all three rows; nUPE is on the movements that PolicyAlign keeps.";
 
-/// Rows that the Gaussian processes learn from: all that they take by themselves of the longer movements, where fewer cost
-/// two digits.
+/// Number of rows from which the Gaussian processes learn. For the longer movements it is their default, because fewer
+/// rows cost two digits of accuracy.
 fn max_rows(size: usize) -> usize {
     if size < 100 { 1000 } else { 1500 }
 }
 
-/// Rows that the Gaussian processes learn from in the literal reading, which shows them nothing new.
+/// Number of rows from which the Gaussian processes learn in the literal reading, which gives no new information about
+/// them.
 const LITERAL_ROWS: usize = 500;
 
-/// Names in rows.
+/// Bandwidths, with their names in rows.
 const BANDWIDTHS: [(&str, Bandwidth); 3] =
     [("narrow", Bandwidth::Narrow), ("medium", Bandwidth::Medium), ("wide", Bandwidth::Wide)];
 
-/// The three systems: number, name, trajectories and samples, potential.
+/// The three systems: number, name, number of trajectories and of samples, potential.
 fn systems() -> [(u32, &'static str, usize, ToyPotential); 3] {
     [
         (PARABOLA_SYSTEM, "parabola", 40, ToyPotential::parabola()),
@@ -97,14 +98,14 @@ fn systems() -> [(u32, &'static str, usize, ToyPotential); 3] {
     ]
 }
 
-/// What a table is made of, all rows alike.
+/// The common properties of a table's rows.
 struct Toy {
     redraw: Redraw,
-    /// Its random streams follow from this one.
+    /// The first of its random streams.
     first_system: u32,
     start_range: f64,
     time_step: f64,
-    /// Movements of a row, where not as many as its samples.
+    /// Number of movements of a row; `None` for as many as its samples.
     movements: Option<usize>,
     recipe: Recipe,
 }
@@ -115,7 +116,7 @@ impl Toy {
         Toy { redraw, first_system, start_range, time_step, movements: None, recipe: Recipe::default() }
     }
 
-    /// A system of so many samples and, if nothing else is asked for, as many movements.
+    /// A system with `size` samples per movement, and as many movements unless `movements` is set.
     fn system(&self, size: usize, potential: ToyPotential) -> ToySystem {
         let Toy { redraw, start_range, time_step, .. } = *self;
         let n_trajectories = self.movements.unwrap_or(size);
@@ -141,14 +142,14 @@ impl Toy {
     }
 }
 
-/// The table as it is printed, changed.
+/// The printed table with a change.
 fn changed(change: impl Fn(&mut Toy)) -> Vec<Setup> {
     let mut toy = Toy::new(Redraw::Every(REDRAW), 0);
     change(&mut toy);
     toy.printed()
 }
 
-/// Where the numbers of the table come from.
+/// The settings of the table, with the origin of their values.
 pub(crate) fn settings() -> Vec<Setting> {
     let setting = |name, class, paper, used, change: fn(&mut Toy, f64)| {
         Setting::new("table1", name, class, paper, used, move |value| Ok(changed(|toy| change(toy, value))))
@@ -178,7 +179,7 @@ pub(crate) fn settings() -> Vec<Setting> {
     settings
 }
 
-/// What texts ask about besides.
+/// Other settings that texts quote.
 pub(crate) fn asked_about() -> Vec<Setting> {
     let with = |movements: f64| Ok(changed(|toy| toy.movements = Some(movements.round() as usize)));
     vec![Setting::new("table1", "movements", Class::Paper, "40 or 100", 40.0, with)]
@@ -197,12 +198,12 @@ fn setups(redraw: Redraw, first_system: u32, max_rows: fn(usize) -> usize) -> Ve
     setups
 }
 
-/// A system in each bandwidth.
+/// The cases of a system, one per bandwidth.
 fn cases(name: &str, size: usize) -> [String; 3] {
     BANDWIDTHS.map(|(bandwidth, _)| format!("{name}-{size}x{size}-{bandwidth}"))
 }
 
-/// The learners on each system, in each bandwidth.
+/// Comparisons of the learners on each system with each bandwidth.
 fn comparisons() -> Vec<Comparison> {
     let baselines = toy_baselines(FrontEnd::FiniteDifferences, 1);
     let cases = systems().into_iter().flat_map(|(_, name, size, _)| cases(name, size));
@@ -210,7 +211,7 @@ fn comparisons() -> Vec<Comparison> {
     cases.flat_map(lines).collect()
 }
 
-/// Who learns the toy system beside PolicyAlign.
+/// The learners of the toy system other than PolicyAlign.
 pub fn toy_baselines(front_end: FrontEnd, max_rows: usize) -> Baselines {
     Baselines {
         naive: Some(toy_naive()),
@@ -231,7 +232,7 @@ pub(crate) fn toy_protocol(algorithm: PolicyAlign) -> Protocol {
     Recipe::default().protocol(algorithm, 2, 1.0)
 }
 
-/// The regression of all rows.
+/// The regression that all rows use.
 pub fn toy_regressor() -> LwprRegressor {
     Recipe::default().regressor(2, 1.0)
 }
@@ -243,7 +244,7 @@ pub fn toy_naive() -> DirectPolicyLearning {
 
 /// Work of aligning and regression, in the unit of [`Setup::cost`].
 pub(crate) fn learning_cost(n_trajectories: usize, n_samples: usize) -> u64 {
-    // Measured: regression takes about as long as 100 distance evaluations a sample.
+    // Measured: per sample, regression takes about as long as 100 distance evaluations.
     (n_trajectories * n_samples * (n_trajectories + 100)) as u64
 }
 

@@ -1,4 +1,5 @@
-//! Table 2 (Section 4.2): grasping a ball through a wall with a gap, and how policies carry over to other constraints.
+//! Table 2 (Section 4.2): grasping a ball through a wall with a gap, and generalisation of the policies to other
+//! constraints.
 
 use std::collections::BTreeMap;
 
@@ -19,10 +20,10 @@ use crate::robots::upper_body;
 use crate::setting::{Class, SILENT, Setting, TIME_STEP};
 use crate::{Experiment, Measures, Row, Setup, Trial};
 
-/// The system that data sets are drawn for.
+/// The number of the data sets' system, which selects the random stream.
 pub const GRASP_SYSTEM: u32 = 420;
 
-/// What the palms' coordinates are divided by, metres: for PolicyAlign and for the naive learner.
+/// Divisors of the palms' coordinates, metres: for PolicyAlign and for the naive learner.
 const SPREAD: f64 = 0.62;
 const NAIVE_SPREAD: f64 = 0.4;
 
@@ -66,7 +67,7 @@ pub(crate) fn table2() -> anyhow::Result<Experiment> {
     })
 }
 
-/// What the printed rows are made of.
+/// The setup of the printed rows.
 struct Bench {
     grasp: Grasp,
     spread: f64,
@@ -79,7 +80,7 @@ impl Bench {
         Ok(Bench { grasp: grasp()?, spread: SPREAD, naive_spread: NAIVE_SPREAD, recipe: Recipe::default() })
     }
 
-    /// Moves the ball, the wall half way to it, and the starts before the wall.
+    /// Moves the ball, the wall to half its distance, and the starts to the region before the wall.
     fn place(&mut self, ball: f64, wall_influence: f64) {
         let Grasp { scene, start_depth, .. } = &mut self.grasp;
         (scene.ball.x, scene.wall, scene.wall_influence) = (ball, ball / 2.0, wall_influence);
@@ -97,7 +98,7 @@ impl Bench {
     }
 }
 
-/// Where its numbers come from.
+/// The settings, with the origin of their values.
 pub(crate) fn settings() -> Vec<Setting> {
     let setting = |name, paper, used, change: fn(&mut Bench, f64)| {
         Setting::new("table2", name, Class::Fitted, paper, used, move |value| {
@@ -130,15 +131,15 @@ pub(crate) fn settings() -> Vec<Setting> {
 /// The rows of the printed table.
 const CASES: [&str; 3] = ["training", "unseen_barrier", "unconstrained"];
 
-/// What rows of other learners are named after.
+/// The prefix of the rows of other learners.
 const CASE: &str = "grasp";
 
-/// Who learns beside PolicyAlign and the naive learner.
+/// The learners other than PolicyAlign and the naive learner.
 pub fn grasp_baselines() -> Baselines {
     Baselines::of_gaussians(FrontEnd::FiniteDifferences, 1000)
 }
 
-/// What is demonstrated.
+/// The demonstrated task.
 ///
 /// # Errors
 /// If the robot's files are damaged.
@@ -156,11 +157,11 @@ pub fn grasp_naive() -> DirectPolicyLearning {
     Recipe::default().naive(6, NAIVE_SPREAD)
 }
 
-/// Where the table has each learner's errors: on samples of kept movements, and of all.
+/// The measures of each learner in the table: on samples of kept movements, and of all movements.
 const MEASURES: [[Measure; 2]; 2] =
     [[Measure::PolicyAlign, Measure::PolicyAlignAll], [Measure::Naive, Measure::NaiveAll]];
 
-/// The errors of the rows, in the same two ways.
+/// The errors of the rows, on the same two kinds of samples.
 const ERRORS: [[Measure; 2]; 3] = [
     [Measure::Ncpe, Measure::NcpeAll],
     [Measure::NcpeUnseen, Measure::NcpeUnseenAll],
@@ -189,7 +190,7 @@ impl Trial for GraspBaselines {
     }
 }
 
-/// All rows: they are measured on the same data sets.
+/// All printed rows, which share the same data sets.
 #[derive(Serialize)]
 struct GraspTrial {
     grasp: Grasp,
@@ -207,7 +208,7 @@ impl Trial for GraspTrial {
                 [Measure::NcpeUnseen, Measure::NcpeUnseenAll].into_iter().zip(evaluation.unseen(&learnt, &obstacle)?),
             );
         }
-        // A row of the table is one kind of error, of all learners.
+        // Each row of the table contains one kind of error, of all learners.
         let row = |errors: [Measure; 2]| {
             let of_learner = |(measures, found): ([Measure; 2], &BTreeMap<Measure, f64>)| {
                 measures.into_iter().zip(errors.map(|error| found[&error]))
@@ -229,7 +230,7 @@ mod tests {
     use crate::quotable;
     use crate::seed::generator;
 
-    /// Numbers in the remark that no record has: they follow from the set-up.
+    /// The numbers in the remark that are not in the records follow from the set-up.
     #[test]
     fn the_remark_is_as_the_scene_is() {
         let remark = table2().unwrap().remark;
@@ -239,7 +240,7 @@ mod tests {
         let grasp = grasp().unwrap();
         let mut rng = generator(1, GRASP_SYSTEM, 0);
         let starts: Vec<_> = (0..grasp.n_trajectories).map(|_| grasp.start(&mut rng).unwrap()).collect();
-        // Of a normal distribution 21.2 % lie below 0.8 standard deviations under its mean.
+        // In a normal distribution 21.2 % of the values lie more than 0.8 standard deviations below the mean.
         let below = (grasp.gap_mean - grasp.gap_least) / grasp.gap_deviation;
         assert!((below - 0.8).abs() < 1e-12 && remark.contains("widens 21 % of the gaps"));
         let widened = starts.iter().filter(|start| start.gap <= grasp.gap_least).count();

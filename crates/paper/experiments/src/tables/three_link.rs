@@ -19,7 +19,7 @@ use crate::{Experiment, Measures, Row, Setup, Trial};
 /// The system whose random stream is used.
 pub const ARM_SYSTEM: u32 = 440;
 
-/// What its rows of other learners are named after.
+/// The prefix of the rows of other learners.
 const CASE: &str = "arm";
 
 /// The experiment.
@@ -52,7 +52,7 @@ pub(crate) fn three_link() -> anyhow::Result<Experiment> {
     })
 }
 
-/// Who learns beside PolicyAlign and the naive learner.
+/// The learners other than PolicyAlign and the naive learner.
 pub(crate) fn baselines(max_rows: usize) -> Baselines {
     Baselines::of_gaussians(FrontEnd::FiniteDifferences, max_rows)
 }
@@ -80,7 +80,7 @@ fn printed(arm: ThreeLinkArm, recipe: &Recipe) -> anyhow::Result<Setup> {
     Ok(Setup::new("three_link", ARM_SYSTEM, 4_000_000, rows, ArmTrial { arm, protocol }))
 }
 
-/// Where its numbers come from.
+/// The settings, with the origin of their values.
 pub(crate) fn settings() -> Vec<Setting> {
     let setting = |name, class, paper, used, change: fn(&mut ThreeLinkArm, f64)| {
         Setting::new("three_link", name, class, paper, used, move |value| {

@@ -1,4 +1,4 @@
-//! What mends figure 8: demonstrations that come to the ball from all around, beside those through the gap.
+//! The remedy for figure 8: additional demonstrations that approach the ball from all sides, not only through the gap.
 
 use constraints::Unconstrained;
 use demo_gen::{Grasp, GraspStart, Recording};
@@ -17,10 +17,10 @@ use super::robot::FARTHEST;
 use crate::rounded;
 use crate::sound::{Sound, as_many, grid, some, within};
 
-/// Palms start around their places at the ball: each coordinate is at most this far off, metres.
+/// Palms start around their target places at the ball: each coordinate deviates by at most this much, metres.
 const AROUND: f64 = 0.1;
 
-/// Where the policy wants the palms with nothing in the way: by start, one row of six a sample, metres.
+/// Where the policy moves the palms unconstrained: for each start, a row of six numbers per sample, metres.
 #[derive(Serialize, Deserialize)]
 pub(crate) struct AllAround {
     palms: Vec<Vec<Vec<f64>>>,
@@ -40,14 +40,14 @@ impl Sound for AllAround {
 }
 
 impl AllAround {
-    /// As movements of a learner of this name.
+    /// Converts them to movements of a learner with this name.
     pub(crate) fn movements(self, learner: &str) -> impl Iterator<Item = Movement> {
         let movement = |(start, palms)| Movement::of_palms(learner, start, palms);
         self.palms.into_iter().enumerate().map(movement)
     }
 }
 
-/// The same learner from the same demonstrations, and as many again that begin around the ball.
+/// PolicyAlign, learnt from the same demonstrations and as many again that begin around the ball.
 pub(crate) fn all_around(seed: u64) -> anyhow::Result<AllAround> {
     let grasp = grasp()?;
     let DataSet { mut recordings, shown, mut rng } = DataSet::draw(&grasp, seed)?;
@@ -61,7 +61,7 @@ pub(crate) fn all_around(seed: u64) -> anyhow::Result<AllAround> {
     Ok(AllAround { palms: shown.iter().map(palms).collect::<anyhow::Result<_>>()? })
 }
 
-/// Movements that begin around the palms' places at the ball, above the table, where the wall is not felt.
+/// Unconstrained movements that begin around the palms' target places at the ball, above the table.
 fn from_all_around<R: Rng>(grasp: &Grasp, number: usize, rng: &mut R) -> anyhow::Result<Vec<Recording>> {
     let (scene, target) = (&grasp.scene, grasp.scene.target());
     let free = Unconstrained { dim: target.len() };

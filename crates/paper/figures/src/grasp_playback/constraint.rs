@@ -1,14 +1,14 @@
-//! What is in the way.
+//! Constraints of the movements.
 
 use constraints::Barrier;
 use demo_gen::{Grasp, GraspStart};
 
-/// What is in the way of a movement.
+/// The constraint of a movement.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Constraint {
-    /// The demonstrations' wall, each start with its own gap.
+    /// The wall of the demonstrations; each start has a different gap.
     Gap,
-    /// The obstacle that no demonstration shows.
+    /// The obstacle that no demonstration contains.
     Obstacle,
     None,
 }
@@ -32,7 +32,7 @@ impl Constraint {
         }
     }
 
-    /// The plates that stand there for a movement from this start.
+    /// The plates of the constraint for a movement from this start.
     pub(super) fn barrier(self, grasp: &Grasp, start: &GraspStart) -> anyhow::Result<Option<Barrier>> {
         Ok(match self {
             Self::Gap => Some(grasp.scene.wall_with_gap(start.gap)?),

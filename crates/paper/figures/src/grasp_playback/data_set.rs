@@ -1,4 +1,4 @@
-//! The table's first data set, and from which of its starts movements are shown.
+//! The table's first data set, and the starts from which movements are shown.
 
 use anyhow::ensure;
 use demo_gen::{Grasp, GraspStart, Recording};
@@ -9,12 +9,12 @@ use rand_chacha::ChaCha8Rng;
 use super::STARTS;
 use super::starts::chosen;
 
-/// What is learnt from.
+/// The training data.
 pub(super) struct DataSet {
     pub(super) recordings: Vec<Recording>,
-    /// Those of its starts from which movements are shown.
+    /// The starts from which movements are shown.
     pub(super) shown: Vec<GraspStart>,
-    /// What is left of its random numbers.
+    /// The random number generator, after the data set was drawn.
     pub(super) rng: ChaCha8Rng,
 }
 

@@ -1,4 +1,4 @@
-//! Who moves under what, and how all joints do it.
+//! Movements of each learner under each constraint, with all joints.
 
 use anyhow::Context as _;
 use constraints::{Barrier, PfaffianConstraint, Unconstrained};
@@ -27,26 +27,26 @@ pub(crate) struct Movement {
     pub(crate) constraint: String,
     /// Id of the learner.
     pub(crate) learner: String,
-    /// Counts from 0.
+    /// Index, from 0.
     pub(crate) start: usize,
-    /// Where plates stand: from y to y, nothing where one does not end.
+    /// The extents of the plates along y; `None` where a plate has no end.
     pub(crate) plates: Vec<[Option<f64>; 2]>,
-    /// Configurations, one row a sample.
+    /// Configurations, one row per sample.
     pub(crate) joints: Vec<Vec<f64>>,
-    /// Where the policy wants the left palm and the right one, one row of six a sample.
+    /// Places of the left and right palm according to the policy, a row of six numbers per sample.
     pub(crate) palms: Vec<Vec<f64>>,
-    /// How far a palm is at most from where the policy wants it, millimetres.
+    /// Largest distance of a palm from its place according to the policy, millimetres.
     pub(crate) error_mm: f64,
 }
 
 impl Movement {
-    /// What a learner's policy wants with nothing in the way, carried out by nobody.
+    /// An unconstrained movement of the palms according to a learner's policy, without joint angles.
     pub(super) fn of_palms(learner: &str, start: usize, palms: Vec<Vec<f64>>) -> Movement {
         let (constraint, learner) = (Constraint::None.id().to_owned(), learner.to_owned());
         Movement { constraint, learner, start, plates: vec![], joints: vec![], palms, error_mm: 0.0 }
     }
 
-    /// Whether there is a configuration of all joints, and a place for both palms, at every sample.
+    /// Checks that every sample has a configuration of all joints and places of both palms.
     pub(super) fn check(&self, n_joints: usize) -> anyhow::Result<()> {
         some("samples of a movement", &self.palms)?;
         grid("joints", &self.joints, n_joints, self.palms.len())?;
@@ -72,7 +72,7 @@ pub(super) fn movements(grasp: &Grasp, seed: u64) -> anyhow::Result<Vec<Movement
     all.into_par_iter().map(movement).collect()
 }
 
-/// What all movements share.
+/// Data that all movements share.
 struct Stage<'a> {
     grasp: &'a Grasp,
     policies: [Box<dyn Policy>; 4],
@@ -103,8 +103,8 @@ impl Stage<'_> {
     }
 }
 
-/// How far a palm (6, N) is at most from where forward kinematics of the joints (n, N) has it; what is kept is judged,
-/// as it is rounded.
+/// Largest distance between a palm (6, N) and its place by forward kinematics of the joints (n, N). Both are compared
+/// as stored, after rounding.
 fn largest_error_mm(body: &UpperBody, joints: &DMatrix<f64>, palms: &DMatrix<f64>) -> anyhow::Result<f64> {
     let mut largest = 0.0_f64;
     for (q, wanted) in joints.column_iter().zip(palms.column_iter()) {
@@ -113,11 +113,11 @@ fn largest_error_mm(body: &UpperBody, joints: &DMatrix<f64>, palms: &DMatrix<f64
             largest = largest.max((reached.coords - wanted).norm());
         }
     }
-    // Rounded upwards, so that no sample is farther away.
+    // Rounded upwards, so that it remains an upper bound.
     Ok((largest * 1e6).ceil() / 1e3)
 }
 
-/// One row a sample.
+/// Converts columns to rows, one per sample.
 pub(super) fn rows(columns: &DMatrix<f64>) -> Vec<Vec<f64>> {
     columns.column_iter().map(|column| column.iter().copied().collect()).collect()
 }

@@ -1,4 +1,4 @@
-//! Whose policies are rolled out: the truth, and what is learnt of the table's first data set.
+//! The policies that are rolled out: the true one, and those learnt from the table's first data set.
 
 use align::{Aligned, DirectPolicyLearning, LwprRegressor, PolicyAlign, PotentialPolicy};
 use demo_gen::{Grasp, Recording, demonstrations};
@@ -9,14 +9,14 @@ use rand_chacha::ChaCha8Rng;
 
 use crate::Who;
 
-/// A roll-out leaves the data now and then: there every receptive field counts, however small its activation.
+/// Roll-outs sometimes leave the region of the data. There every receptive field counts, however small its activation.
 const CUTOFF: f64 = 1e-9;
 
-/// Who is shown, each with its id.
+/// The learners that are shown, with their ids.
 pub(crate) const LEARNERS: [(&str, Who); 4] =
     [("expert", Who::Expert), ("naive", Who::Naive), ("policy_align", Who::PolicyAlign), ("slope_gp", Who::SlopeGp)];
 
-/// What PolicyAlign learns, as for the table.
+/// The result of PolicyAlign, learnt as for the table.
 pub(super) struct Learnt {
     pub(super) aligned: Aligned,
     pub(super) test: TestSamples,
@@ -33,13 +33,13 @@ impl Learnt {
     }
 }
 
-/// The policies, in the order of [`LEARNERS`]; learnt as for the table, from what is left of its random numbers.
+/// The policies, in the order of [`LEARNERS`]. They are learnt as for the table, with the same random number generator.
 pub(super) fn policies(
     grasp: &Grasp,
     recordings: &[Recording],
     rng: &mut ChaCha8Rng,
 ) -> anyhow::Result<[Box<dyn Policy>; 4]> {
-    // In the table's order.
+    // In the order of the table, because all draw from one generator.
     let Learnt { aligned, test, policy } = Learnt::from(recordings, rng)?;
     let naive = DirectPolicyLearning { regressor: LwprRegressor { cutoff: CUTOFF, ..grasp_naive().regressor } };
     let naive = naive.learn_policy(aligned.demonstrations(), &test.of_all, rng)?;

@@ -1,4 +1,4 @@
-//! The robot as a tree that a few lines of any language can move.
+//! The robot as a kinematic tree that any language can evaluate in a few lines.
 
 use anyhow::{Context as _, bail};
 use demo_gen::UpperBody;
@@ -9,38 +9,38 @@ use serde::{Deserialize, Serialize};
 use crate::scene::shapes::{Shape, form, numbers};
 use crate::sound::{self, among, within};
 
-/// No link is farther away, metres.
+/// Bound on distances, metres.
 pub(super) const FARTHEST: f64 = 10.0;
 
-/// Links and what they look like.
+/// The links and their shapes.
 #[derive(Serialize, Deserialize)]
 pub(crate) struct Robot {
-    /// A parent comes before its children.
+    /// Parents come before their children.
     pub(crate) links: Vec<Link>,
     pub(crate) shapes: Vec<Shape<usize>>,
-    /// Places of the left palm and of the right one in `links`.
+    /// Indices of the left and the right palm in `links`.
     pub(crate) hands: [usize; 2],
-    /// Names, in the order of a configuration.
+    /// Joint names, in the order of a configuration.
     pub(crate) joints: Vec<String>,
 }
 
-/// A link's pose is its parent's, then translation and rotation, then the motion of its joint.
+/// The pose of a link is its parent's pose, followed by translation, rotation, and the motion of its joint.
 #[derive(Serialize, Deserialize)]
 pub(crate) struct Link {
     pub(crate) name: String,
-    /// Place in `links`; none for the first.
+    /// Index in `links`; `None` for the first.
     pub(crate) parent: Option<usize>,
     pub(crate) translation: [f64; 3],
-    /// By rows.
+    /// Row-major.
     pub(crate) rotation: [f64; 9],
     pub(crate) motion: Motion,
-    /// Of length 1, in the joint's frame.
+    /// Unit vector in the joint's frame.
     pub(crate) axis: [f64; 3],
-    /// Place in a configuration.
+    /// Index in a configuration.
     pub(crate) joint: Option<usize>,
 }
 
-/// What a joint does, about or along its axis.
+/// How a joint moves, about or along its axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub(crate) enum Motion {
@@ -50,7 +50,7 @@ pub(crate) enum Motion {
 }
 
 impl Robot {
-    /// Whether links, joints and shapes are there that others point to; how many joints there are.
+    /// Checks that all indices of links, joints and shapes are valid, and returns the number of joints.
     pub(super) fn check(&self) -> anyhow::Result<usize> {
         let (links, joints) = (self.links.len(), self.joints.len());
         for (place, link) in self.links.iter().enumerate() {

@@ -1,9 +1,9 @@
-//! What stands around the robot.
+//! The surroundings of the robot.
 
 use demo_gen::GraspScene;
 use serde::{Deserialize, Serialize};
 
-/// Ball, table, the plane in which plates stand, and where the palms hold the ball.
+/// Ball, table, the plane of the plates, and the target places of the palms.
 #[derive(Serialize, Deserialize)]
 pub(crate) struct Scene {
     pub(crate) ball: Ball,
@@ -19,7 +19,7 @@ pub(crate) struct Ball {
     pub(crate) diameter: f64,
 }
 
-/// A board from x = `near` to `far`, and to either side.
+/// A board from x = `near` to `far`, symmetric in y.
 #[derive(Serialize, Deserialize)]
 pub(crate) struct Table {
     pub(crate) top: f64,
@@ -28,7 +28,7 @@ pub(crate) struct Table {
     pub(crate) half_width: f64,
 }
 
-/// Plates stand in the plane of this x, and are felt within `reach` of it.
+/// The plates are in the plane of this x; they act within `reach` of it.
 #[derive(Serialize, Deserialize)]
 pub(crate) struct Wall {
     pub(crate) x: f64,

@@ -1,11 +1,11 @@
-//! Which of the demonstrations' starts are shown.
+//! Selects the starts of demonstrations that are shown.
 
 use demo_gen::{GraspStart, UpperBody};
 
-/// Starts whose palms, taken together, are less than this apart look the same, metres.
+/// Two starts look the same if their palms, taken together, are less than this apart, metres.
 const DIFFERENT: f64 = 0.3;
 
-/// The starts most like the posture "ready", but not like each other: places in `starts`, at most so many.
+/// Indices in `starts` of those closest to the posture "ready" that differ from each other, at most `number`.
 pub(super) fn chosen(body: &UpperBody, starts: &[GraspStart], number: usize) -> Vec<usize> {
     let strangeness = |start: &GraspStart| (&start.posture - body.ready()).norm();
     let mut order: Vec<usize> = (0..starts.len()).collect();

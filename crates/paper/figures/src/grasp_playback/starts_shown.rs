@@ -1,9 +1,9 @@
-//! From which starts the view shows movements.
+//! Selects the starts from which the view shows movements.
 
 use super::GraspPlayback;
 
-/// Starts from which no policy takes a palm through the table: nothing in the simulation stops it there, and a robot
-/// whose hands go through a table shows nothing.
+/// Starts from which no policy moves a palm through the table. The simulation does not prevent that, and a picture of
+/// hands in a table would be of no use.
 pub(crate) fn starts_shown(playback: &GraspPlayback) -> Vec<usize> {
     let table = &playback.scene.table;
     let through = |palm: &[f64]| {

@@ -8,7 +8,7 @@ use super::robot::Motion;
 use super::*;
 use crate::scene::shapes;
 
-/// Poses of all links in a configuration, by the tree of the document alone: as the script of the page has them.
+/// Poses of all links in a configuration, from the tree of the document alone, as the script of the page computes them.
 fn poses(robot: &Robot, joints: &[f64]) -> Vec<IsometryMatrix3<f64>> {
     let mut poses: Vec<IsometryMatrix3<f64>> = Vec::with_capacity(robot.links.len());
     for link in &robot.links {
@@ -73,7 +73,7 @@ fn no_movement_touches_or_jumps_and_the_demonstrated_are_exact() {
         }
         for pair in movement.joints.windows(2) {
             let step = pair[0].iter().zip(&pair[1]).map(|(a, b)| (b - a).abs()).fold(0.0, f64::max);
-            // Each value is rounded by at most half of the last decimal.
+            // Rounding changes each value by at most half of the last decimal.
             assert!(step <= PalmTracking::default().stride + 1.01e-4, "{place}: {step}");
         }
     }

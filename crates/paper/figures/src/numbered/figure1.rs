@@ -1,4 +1,4 @@
-//! The robot: what it is made of, and where its 22 joints are.
+//! The robot: its links, and the positions of its 22 joints.
 
 use experiments::upper_body;
 use kinematics::{LinkId, MotionKind, Workspace};
@@ -23,7 +23,7 @@ struct Joint {
     name: String,
     slides: bool,
     at: [f64; 3],
-    /// Of length 1.
+    /// Unit vector.
     axis: [f64; 3],
 }
 
@@ -75,7 +75,7 @@ pub(crate) fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
     Ok(Drawing { picture: Picture::rows(&[&[&counted, &axes]]), tables: vec![] })
 }
 
-/// So far to the robot's left its height stands, metres.
+/// Distance of the height scale to the robot's left, metres.
 const BESIDE: f64 = 0.55;
 
 /// Parts of the body, by the names of links and joints.
@@ -129,7 +129,7 @@ fn heel() -> Vec<Item> {
     axes.chain([name]).collect()
 }
 
-/// How high the head reaches: a scale beside the robot, metres.
+/// A scale beside the robot that shows the height of its head, metres.
 fn height(shapes: &[Shape]) -> Vec<Item> {
     let top = |shape: &Shape| (shape.kind == Kind::Sphere).then(|| shape.translation[2] + shape.size[0]);
     let top = shapes.iter().filter_map(top).fold(0.0, f64::max);
@@ -144,7 +144,7 @@ fn height(shapes: &[Shape]) -> Vec<Item> {
     vec![line, end(0.0), end(top), words]
 }
 
-/// How many joints meet in one point, and which.
+/// Number and names of the joints at each point.
 fn counts(joints: &[Joint]) -> Vec<Item> {
     let mut places: Vec<(Point3<f64>, Vec<&Joint>)> = vec![];
     for joint in joints {
@@ -179,7 +179,7 @@ fn spelled(joints: &[&Joint]) -> String {
     }
 }
 
-/// The axis of each joint; one that slides is drawn as a broken line.
+/// The axis of each joint; the axis of a sliding joint is dashed.
 fn axes(joints: &[Joint]) -> Vec<Item> {
     let axis = |joint: &Joint| {
         let (at, along) = (Point3::from(joint.at), Vector3::from(joint.axis));
@@ -215,7 +215,7 @@ mod tests {
             (joint("l_shoulder_pitch").at, joint("l_shoulder_pitch").axis),
             ([0.05, 0.18, 0.92], [0.0, 1.0, 0.0])
         );
-        // Upper arm: 0.2 down, turned by roll 0.3 about x, then by pitch 0.3 about y.
+        // Upper arm: 0.2 down, rotated by roll 0.3 about x, then by pitch 0.3 about y.
         let elbow = [
             0.05 - 0.2 * 0.3_f64.cos() * 0.3_f64.sin(),
             0.18 + 0.2 * 0.3_f64.sin(),

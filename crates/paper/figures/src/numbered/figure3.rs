@@ -1,4 +1,5 @@
-//! Fig. 3: what constraints leave of a policy, why averages of that mislead, and what can never be known from it.
+//! Fig. 3: projections of a policy by constraints, why averaging them is misleading, and which component remains
+//! unknown.
 
 use constraints::NullSpaceProjector;
 use nalgebra::{DVector, Point3, dmatrix, dvector};
@@ -9,32 +10,32 @@ use crate::Who;
 use crate::sound::Sound;
 use crate::{Drawing, Sources, rounded};
 
-/// What a system wants to do: forwards, towards the reader, upwards.
+/// A policy's action: forwards, towards the reader, upwards.
 const POLICY: [f64; 3] = [0.8, -0.6, 0.7];
 
-/// Another policy, which wants to go less far up.
+/// The action of another policy, which moves up less.
 const OTHER: [f64; 3] = [0.8, -0.6, 0.3];
 
-/// Corners of the vertical and of the horizontal plane.
+/// Corners of the vertical and the horizontal plane.
 const VERTICAL: [[f64; 3]; 4] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 0.0, 0.9], [0.0, 0.0, 0.9]];
 const HORIZONTAL: [[f64; 3]; 4] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, -0.8, 0.0], [0.0, -0.8, 0.0]];
 
 const GREY: &str = "#5a5a5a";
 
-/// A colour beside those of [`Who`], for the other policy.
+/// The other policy's colour, distinct from those of [`Who`].
 const PURPLE: &str = "#9a4a7c";
 
 /// Velocities from one point.
 #[derive(Serialize, Deserialize)]
 pub(crate) struct Vectors {
     policy: [f64; 3],
-    /// What the vertical and the horizontal constraint leave of it.
+    /// Its projections by the vertical and the horizontal constraint.
     seen: [[f64; 3]; 2],
-    /// The mean of both, and what they leave of that.
+    /// The mean of both projections, and the projections of that mean.
     mean: [f64; 3],
     mean_seen: [[f64; 3]; 2],
     other: [f64; 3],
-    /// What the horizontal constraint leaves of the other policy.
+    /// The projection of the other policy by the horizontal constraint.
     other_seen: [f64; 3],
 }
 
@@ -115,12 +116,12 @@ fn plane(corners: [[f64; 3]; 4]) -> Item {
     Item::Plate { corners: corners.map(Point3::from).to_vec(), paint: Paint { color: "#9a9a9a", opacity: 0.3 } }
 }
 
-/// A vector, from the origin.
+/// A vector from the origin.
 fn arrow(to: [f64; 3], color: &'static str, width: f64) -> Item {
     Item::Arrow { from: Point3::origin(), to: to.into(), stroke: Stroke { color, width, dash: Dash::Solid } }
 }
 
-/// From the end of a vector to that of its projection.
+/// A line from the end of a vector to the end of its projection.
 fn down(from: [f64; 3], to: [f64; 3], color: &'static str) -> Item {
     let stroke = Stroke { color, width: 1.2, dash: Dash::Dashed };
     Item::Path { points: vec![from.into(), to.into()], stroke, label: None }

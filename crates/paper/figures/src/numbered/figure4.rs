@@ -10,13 +10,13 @@ use crate::sound::{Sound, field as sound_field, some};
 use crate::state_plane::state_plane;
 use crate::{Csv, Drawing, Sources, rounded};
 
-/// Drawn is [−2, 2]².
+/// The picture shows [−2, 2]².
 const EXTENT: f64 = 2.0;
 
-/// The box around the surface, with some room beside it.
+/// Half the side of the box around the surface, with a margin.
 const BOX: f64 = 2.2;
 
-/// The hills and hollows: height, place and breadth of each Gaussian.
+/// The maxima and minima: height, centre and width of each Gaussian.
 const BUMPS: [(f64, [f64; 2], f64); 5] = [
     (1.0, [-1.2, 0.5], 0.5),
     (0.8, [0.1, 1.2], 0.5),
@@ -25,7 +25,7 @@ const BUMPS: [(f64, [f64; 2], f64); 5] = [
     (-0.7, [0.7, -0.8], 0.45),
 ];
 
-/// Arrows are drawn as long as so many seconds of movement.
+/// The length of an arrow corresponds to this many seconds of movement.
 const ARROW_SECONDS: f64 = 0.25;
 
 /// φ(x) = Σ aᵢ exp(−‖x − cᵢ‖² / 2sᵢ²).
@@ -50,7 +50,7 @@ impl Potential for Hills {
     }
 }
 
-/// A Gaussian's value at a state, and the way there from its centre.
+/// A Gaussian's value at a state, and the state relative to its centre.
 fn at((height, centre, breadth): &(f64, [f64; 2], f64), state: DVectorView<'_, f64>) -> (f64, [f64; 2]) {
     let [x, y] = [state[0] - centre[0], state[1] - centre[1]];
     (height * (-(x * x + y * y) / (2.0 * breadth * breadth)).exp(), [x, y])
@@ -99,7 +99,7 @@ pub(crate) fn hills() -> anyhow::Result<Shown> {
     })
 }
 
-/// The potential on a square grid with so many steps to a side.
+/// The potential on a square grid with `steps` steps per side.
 fn field(steps: i32, kept: impl Fn(f64) -> f64) -> Result<Field, PlotError> {
     let grid: Vec<f64> = (0..=steps).map(|i| EXTENT * (2.0 * f64::from(i) / f64::from(steps) - 1.0)).collect();
     let value = |x: f64, y: f64| kept(Hills.value(DVector::from_vec(vec![x, y]).as_view()));
@@ -107,7 +107,7 @@ fn field(steps: i32, kept: impl Fn(f64) -> f64) -> Result<Field, PlotError> {
     Field::new(grid.clone(), grid, values)
 }
 
-/// Maxima and minima: points of a fine grid that are above, or below, all eight around them.
+/// Maxima and minima: points of a fine grid that are above, or below, all eight neighbours.
 fn extrema() -> Result<[Vec<(f64, f64)>; 2], PlotError> {
     let field = field(400, |value| value)?;
     let (x, y, values) = (field.x(), field.y(), field.values());
@@ -151,7 +151,7 @@ fn coarse(field: &Field) -> Result<Field, PlotError> {
 }
 
 fn layers(shown: &Shown) -> Vec<Layer> {
-    // Whose tip is outside would be cut at the frame.
+    // Omits arrows whose tips the frame would cut off.
     let inside = |&&(x, y, u, v): &&(f64, f64, f64, f64)| {
         [x + ARROW_SECONDS * u, y + ARROW_SECONDS * v].iter().all(|tip| tip.abs() < EXTENT)
     };
@@ -169,14 +169,14 @@ fn layers(shown: &Shown) -> Vec<Layer> {
         Layer::Contours(shown.potential.clone()),
         marks(&shown.maxima, Mark::Up),
         marks(&shown.minima, Mark::Down),
-        // Around shafts that are long enough for one.
+        // A white border around shafts that are long enough.
         arrows(&longer(&shown.constrained), "#ffffff", 5.0, None),
         arrows(&shown.constrained, "#c04a00", 2.4, Some("x₁ blocked")),
         arrows(&shown.unconstrained, "#000000", 1.2, Some("unconstrained")),
     ]
 }
 
-/// Arrows whose shaft can be seen.
+/// Arrows with a visible shaft.
 fn longer(arrows: &[(f64, f64, f64, f64)]) -> Vec<(f64, f64, f64, f64)> {
     const SHAFT: f64 = 0.12;
     arrows.iter().filter(|(_, _, u, v)| ARROW_SECONDS * u.hypot(*v) > SHAFT).copied().collect()
@@ -213,7 +213,7 @@ mod tests {
     fn there_are_three_maxima_and_two_minima() {
         let [maxima, minima] = extrema().unwrap();
         assert_eq!((maxima.len(), minima.len()), (3, 2));
-        // Each is one: near it the policy turns away on all sides, or towards it.
+        // Confirms each extremum: around a maximum the policy points away, around a minimum towards it.
         for (points, sign) in [(maxima, 1.0), (minima, -1.0)] {
             for (x, y) in points {
                 for turn in 0..16 {

@@ -7,18 +7,18 @@ use plot::{Axis, Curve, Curves, Note, Picture};
 use crate::errors::{BASELINES, FIRST, SECOND, Series, Style, axis_down_to};
 use crate::{Csv, Drawing, Sources};
 
-/// In the order of [`BANDWIDTHS`]: how it is drawn, and what its curves are called.
+/// In the order of [`BANDWIDTHS`]: line style, and suffix of the curves' names.
 const STYLES: [(Style, &str); 2] = [(FIRST, ", narrow"), (SECOND, ", medium")];
 
-/// Pixels, and of them for the names of curves.
+/// Size in pixels, and the part of its width for the names of curves.
 const SIZE: (f64, f64) = (640.0, 460.0);
 const ROOM: f64 = 190.0;
 
-/// What is compared is above; from there on the axis is broken.
+/// Range of the errors that are compared; below it the axis is broken.
 const LEFT: [f64; 2] = [1e-3, 4.0];
 
-/// Of both panels, so that they can be compared. An error of 1 is that of a policy that knows nothing but the mean: how far
-/// beyond that curves go is said, not drawn.
+/// Range of both panels, so that they can be compared. An error of 1 is that of a constant policy, the mean. Curves beyond the
+/// range are described in a note, not drawn.
 const RIGHT: [f64; 2] = [1e-6, 10.0];
 
 pub(crate) fn draw_left(sources: &Sources) -> anyhow::Result<Drawing> {
@@ -79,7 +79,7 @@ fn series<'a>(sources: &'a Sources, id: &str, prefix: &str, percent: &[f64]) -> 
     Ok(series.collect())
 }
 
-/// A curve for each learner beside PolicyAlign that was run.
+/// A curve for each learner other than PolicyAlign that was run.
 fn baselines(sources: &Sources, id: &str, case: &str, percent: &[f64]) -> anyhow::Result<Vec<Curve>> {
     let result = sources.experiment(id).with_context(|| format!("{id} was not run"))?;
     let of = |learner: &str| percent.iter().map(|&x| (x, format!("{case}-{x}/{learner}"))).collect();
@@ -89,7 +89,8 @@ fn baselines(sources: &Sources, id: &str, case: &str, percent: &[f64]) -> anyhow
     Ok(curves.filter(|curve| !curve.points.is_empty()).collect())
 }
 
-/// The three errors of both bandwidths, those of the second without bands, as they would lie on those of the first; and others.
+/// The three errors of both bandwidths, and other curves. Those of the second bandwidth have no bands, which would cover those
+/// of the first.
 fn lines(series: &[Series<'_>], baselines: &[Curve]) -> Vec<Curve> {
     let mut lines = vec![];
     for (series, banded) in series.iter().zip([true, false]) {
@@ -119,7 +120,7 @@ fn panel(lines: Vec<Curve>) -> Curves {
     }
 }
 
-/// Between what PolicyAlign's errors are with the most noise, where all are beyond the axis.
+/// A note with the range of PolicyAlign's errors at the highest noise level, if all are beyond the axis.
 fn beyond(displacement: &[Series<'_>]) -> Option<Note> {
     let noise = NOISE_PERCENT[NOISE_PERCENT.len() - 1];
     let curves: Vec<Curve> = displacement.iter().flat_map(Series::curves).collect();

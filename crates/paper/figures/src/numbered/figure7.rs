@@ -10,7 +10,7 @@ use crate::scene::stage;
 use crate::scene::stage::Actor;
 use crate::{Drawing, Sources};
 
-/// Postures that are shown.
+/// Number of postures that are shown.
 const FRAMES: usize = 6;
 
 pub(crate) fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
@@ -26,7 +26,7 @@ pub(crate) fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
     Ok(Drawing { picture: Picture::rows(&rows), tables: vec![] })
 }
 
-/// Samples at which the hands have gone equal shares of their way.
+/// Indices of samples that divide the path of the hands into equal lengths.
 fn stages(palms: &[Vec<f64>]) -> Vec<usize> {
     let step = |pair: &[Vec<f64>]| pair[0].iter().zip(&pair[1]).map(|(a, b)| (b - a).powi(2)).sum::<f64>().sqrt();
     let mut gone = vec![0.0];
@@ -69,7 +69,7 @@ mod tests {
 
     #[test]
     fn frames_share_the_way_not_the_time() {
-        // Half of the way in one step, then slower and slower.
+        // Half of the path in one step, then slower and slower.
         let palms: Vec<Vec<f64>> = (0..60).map(|i| vec![1.0 - 0.5_f64.powi(i), 0.0, 0.0, 0.0, 0.0, 0.0]).collect();
         let stages = stages(&palms);
         assert_eq!((stages[0], stages[2]), (0, 1));

@@ -1,4 +1,5 @@
-//! Reaching with nothing in the way: the expert, the learners, and PolicyAlign where the goal was shown from all sides.
+//! Unconstrained reaching: the expert, the learners, and PolicyAlign with demonstrations that reach the goal from all
+//! sides.
 
 use metrics::Summary;
 use nalgebra::{Point3, Translation3, Vector3};
@@ -11,13 +12,13 @@ use crate::scene::stage;
 use crate::who::TRUTH;
 use crate::{Csv, Drawing, Sources, rounded};
 
-/// From mark to mark on a curve, seconds.
+/// Interval between marks on a curve, seconds.
 const EVERY: f64 = 5.0;
 
-/// Of a metre.
+/// Centimetres per metre.
 const CENTIMETRES: f64 = 100.0;
 
-/// Who is drawn here alone.
+/// The learner that only this figure shows.
 const ALL_AROUND: (&str, Who) = ("all_around", Who::PolicyAlignAllAround);
 
 pub(crate) fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
@@ -35,14 +36,14 @@ pub(crate) fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
     Ok(Drawing { picture: Picture::rows(&rows), tables: vec![ends(&playback), over_time(&distances)] })
 }
 
-/// Panels in a row; and the size of one, pixels: the curves are as wide as two.
+/// Panels per row, and the size of one in pixels; the curves are twice as wide.
 const COLUMNS: usize = 3;
 const SIZE: (f64, f64) = (400.0, 440.0);
 
-/// The movements of those who saw the goal from all sides.
+/// The movements of PolicyAlign with demonstrations from all sides.
 pub(crate) const ALL_AROUND_DOCUMENT: &str = "grasp_all_around";
 
-/// The movements of everybody; older figure data have none of those who saw the goal from all sides.
+/// The movements of all learners. Older figure data lack those from demonstrations from all sides.
 fn played(sources: &Sources) -> anyhow::Result<GraspPlayback> {
     let mut playback: GraspPlayback = sources.document("grasp_playback")?;
     if sources.documents.contains_key(ALL_AROUND_DOCUMENT) {
@@ -51,15 +52,15 @@ fn played(sources: &Sources) -> anyhow::Result<GraspPlayback> {
     Ok(playback)
 }
 
-/// How far hands are from where they should take the ball when movements end, metres, on average.
+/// Mean distances between hands and their target places at the ball at the end of movements, metres.
 pub struct Ends {
-    /// Of the naive learner.
+    /// With the naive learner.
     pub naive: f64,
-    /// Of PolicyAlign.
+    /// With PolicyAlign.
     pub policy_align: f64,
 }
 
-/// Where the movements of Figure 8 end; none if its data are not there.
+/// Distances at the end of the movements of Figure 8; `None` without its data.
 pub fn ends_of_reaching(sources: &Sources) -> Option<Ends> {
     let playback = played(sources).ok()?;
     let end = |id| {
@@ -69,7 +70,7 @@ pub fn ends_of_reaching(sources: &Sources) -> Option<Ends> {
     Some(Ends { naive: end("naive")?, policy_align: end("policy_align")? })
 }
 
-/// Those of the learners whose movements there are: older figure data have fewer.
+/// The learners with movements; older figure data have fewer.
 fn shown(playback: &GraspPlayback) -> impl Iterator<Item = (&'static str, Who)> {
     LEARNERS.into_iter().chain([ALL_AROUND]).filter(|(id, _)| movements(playback, id).next().is_some())
 }
@@ -78,18 +79,18 @@ fn movements<'p>(playback: &'p GraspPlayback, learner: &'p str) -> impl Iterator
     playback.movements.iter().filter(move |movement| movement.constraint == "none" && movement.learner == learner)
 }
 
-/// Where the left palm is over time, or the right one.
+/// Positions of the left (0) or right (1) palm over time.
 fn palm(movement: &Movement, hand: usize) -> impl Iterator<Item = Point3<f64>> {
     movement.palms.iter().map(move |palms| Point3::from_slice(&palms[3 * hand..3 * hand + 3]))
 }
 
-/// How far a palm is from where it should take the ball, over time.
+/// Distance between a palm and its target place at the ball, over time.
 fn distance(playback: &GraspPlayback, movement: &Movement, hand: usize) -> impl Iterator<Item = f64> {
     let target = Point3::from_slice(&playback.scene.target[3 * hand..3 * hand + 3]);
     palm(movement, hand).map(move |palm| (palm - target).norm())
 }
 
-/// All ways and the ball, to the next tenth of a metre.
+/// A frame around all paths and the ball, rounded to tenths of a metre.
 fn frame(playback: &GraspPlayback) -> Frame {
     let ball = &playback.scene.ball;
     let radius = Vector3::repeat(ball.diameter / 2.0);
@@ -106,7 +107,7 @@ fn frame(playback: &GraspPlayback) -> Frame {
     }
 }
 
-/// A learner's ways over the expert's, from above.
+/// A learner's paths over the expert's, from above.
 fn view((id, who): (&str, Who), playback: &GraspPlayback, frame: &Frame) -> Space {
     let ball = &playback.scene.ball;
     let (centre, radius) = (Point3::from(ball.centre), ball.diameter / 2.0);
@@ -125,10 +126,11 @@ fn view((id, who): (&str, Who), playback: &GraspPlayback, frame: &Frame) -> Spac
     Space { title, camera: Camera::ABOVE, items, over, frame: Some(frame.clone()), extent: None, size: SIZE }
 }
 
-/// Of the places where plates stood.
+/// Paint of the blocks in place of the plates.
 const PLATES: Paint = Paint { color: "#a8a8a8", opacity: 0.25 };
 
-/// Where hands were stopped in the demonstrations: beside a gap as wide as those of the shown ones on average.
+/// The regions in which plates stopped hands in the demonstrations. The gap between them has the average width of the
+/// gaps shown.
 fn walls(playback: &GraspPlayback, frame: &Frame) -> Vec<Item> {
     let edges = playback.movements.iter().filter(|m| m.constraint == "gap").flat_map(|m| m.plates.iter().flatten());
     let edges: Vec<f64> = edges.flatten().map(|edge| edge.abs()).collect();
@@ -143,7 +145,7 @@ fn walls(playback: &GraspPlayback, frame: &Frame) -> Vec<Item> {
     sides.into_iter().filter(|(from, to)| from < to).map(|(from, to)| block(from, to)).collect()
 }
 
-/// How far the hands of a learner are from where they should take the ball.
+/// Distances between a learner's hands and their target places at the ball.
 struct Distances {
     id: &'static str,
     who: Who,
@@ -164,12 +166,12 @@ impl Distances {
         Ok(Distances { id, who, over_time: (0..n_samples).map(at).collect::<anyhow::Result<_>>()? })
     }
 
-    /// The mean at the end, metres.
+    /// The mean distance at the end, metres.
     fn at_end(&self) -> f64 {
         self.over_time.last().map_or(f64::NAN, |last| last.1)
     }
 
-    /// With a mark every few seconds and at the end.
+    /// The curve of the mean, with a mark every few seconds and at the end.
     fn curve(&self, time_step: f64) -> Curve {
         let every = (EVERY / time_step).round().max(1.0) as usize;
         let last = self.over_time.len().saturating_sub(1);
@@ -178,7 +180,7 @@ impl Distances {
         Curve { points, stroke: stroke(self.who), sign: Some(sign(self.who)), name: self.name() }
     }
 
-    /// Who, and how far the hands are away at the end.
+    /// The learner, and the distance of its hands at the end.
     fn name(&self) -> String {
         format!("{}: {:.1} cm", self.who.name(), CENTIMETRES * self.at_end())
     }
@@ -202,7 +204,7 @@ fn curves(distances: &[Distances], time_step: f64) -> Curves {
     }
 }
 
-/// The expert's line is broad, so that it is seen under one that covers it.
+/// The expert's line is wider, so that it remains visible under another line.
 fn stroke(who: Who) -> Stroke {
     who.stroke(if who == Who::Expert { 4.0 } else { 1.8 })
 }
@@ -218,12 +220,12 @@ fn sign(who: Who) -> Sign {
     Sign { mark, filling: Filling::Full }
 }
 
-/// Metres, rounded.
+/// Rounds metres to micrometres.
 fn micrometres(value: f64) -> f64 {
     rounded(value, 6)
 }
 
-/// How far each hand is at the end, metres; hand 0 is the left one.
+/// A table of each hand's distance at the end, metres; hand 0 is the left one.
 fn ends(playback: &GraspPlayback) -> Csv {
     let far = |learner: &str, start: usize, hand: usize| {
         let movement = movements(playback, learner).find(|movement| movement.start == start);
@@ -238,7 +240,7 @@ fn ends(playback: &GraspPlayback) -> Csv {
     Csv { name: "ends", header, rows }
 }
 
-/// The curves: time in seconds, then mean and standard deviation of each in metres.
+/// A table of the curves: time in seconds, then each learner's mean and standard deviation in metres.
 fn over_time(distances: &[Distances]) -> Csv {
     let header = distances.iter().flat_map(|Distances { id, .. }| [format!("{id}_mean"), format!("{id}_sd")]);
     let row = |sample: usize| {
@@ -258,7 +260,7 @@ mod tests {
     use super::*;
     use crate::beside_paper;
 
-    /// One start; the right hand never moves, the left one goes along x, and ends this far behind its target.
+    /// Playback with one start. The right hand never moves; the left one moves along x and ends `behind` its target.
     fn playback(behind: [f64; 4]) -> GraspPlayback {
         let palms = |x: f64| vec![x, 0.1, 0.6, 0.7, -0.1, 0.6];
         let movement = |constraint: &str, learner: &str, end: f64, plates: Value| {

@@ -1,4 +1,4 @@
-//! Robots as things in space.
+//! Robots as items of a 3-D scene.
 
 use nalgebra::{IsometryMatrix3, Point3, Vector3};
 use plot::{Item, Paint};
@@ -6,12 +6,12 @@ use plot::{Item, Paint};
 use crate::scene::legs::{eyes, standing};
 use crate::scene::shapes::{Kind, Shape, ends, limbs, pose};
 
-/// Links that are drawn with more than their shapes.
+/// Links that are drawn with additional parts.
 const HEEL: &str = "heel";
 const HEAD: &str = "head";
 
-/// The shapes as things in space, each painted after its link; a cylinder with a sphere at either end is a limb. Legs are
-/// bent as the trunk has moved from where it is at rest, and a head has eyes.
+/// The shapes as items of a scene; the link determines the paint. A cylinder with a sphere at either end becomes a limb.
+/// Legs bend according to the motion of the trunk from its pose at rest, and the head gets eyes.
 pub(crate) fn items(shapes: &[Shape], trunk: &IsometryMatrix3<f64>, paint: impl Fn(&str) -> Paint) -> Vec<Item> {
     let limbs = limbs(shapes);
     let legs = standing(shapes, &HEEL.to_owned());
@@ -54,7 +54,8 @@ mod tests {
         let shapes = posed(body.robot(), &poses).unwrap();
         let items = items(&shapes, &IsometryMatrix3::identity(), |_| Paint::opaque("#ffffff"));
         let count = |is: fn(&Item) -> bool| items.iter().filter(|item| is(item)).count();
-        // Two shins and thighs, two upper arms, two forearms; head and eyes; the neck; feet, body in three, hands.
+        // Capsules: two shins and thighs, two upper arms, two forearms. Balls: head and eyes. Cylinder: the neck. Blocks:
+        // feet, body in three, hands.
         assert_eq!(count(|item| matches!(item, Item::Capsule { .. })), 8);
         assert_eq!(count(|item| matches!(item, Item::Ball { .. })), 3);
         assert_eq!(count(|item| matches!(item, Item::Cylinder { .. })), 1);

@@ -1,5 +1,5 @@
-//! What is drawn of the robot and not computed with: legs from the hips, which go with the trunk, to the feet, which
-//! stand, and eyes. The robot's file has stiff legs, which are there to be collided with.
+//! Parts of the robot that are only drawn, not simulated: eyes, and legs from the hips, which move with the trunk, to
+//! the feet, which stay in place. The legs in the robot's file are stiff and serve as collision shapes.
 
 use nalgebra::{IsometryMatrix3, Point3, Vector3};
 use plot::{Item, Paint};
@@ -7,14 +7,14 @@ use serde::Serialize;
 
 use crate::scene::shapes::{Kind, Shape, limbs, pose};
 
-/// Length of thigh and of shin, metres: knees bend a little as the robot stands. Where hips are farther from the ankles
-/// than both, the bones are drawn apart by what is missing, which knees hide.
+/// Length of thigh and shin, metres; knees bend a little when the robot stands. If a hip is farther from the ankle than
+/// both bones reach, the bones are drawn apart by the missing length, and the round knee hides the gap.
 pub(crate) const BONE: f64 = 0.265;
 
-/// Eyes look out of the head.
+/// Eyes protrude from the head.
 pub(crate) const EYE: Eye = Eye { radius: 0.022, aside: 0.38, up: 0.12 };
 
-/// Metres; and angles from where the head faces, to either side and up, radians.
+/// Metres; angles are relative to the direction of the face, to either side and up, radians.
 #[derive(Serialize)]
 pub(crate) struct Eye {
     radius: f64,
@@ -22,7 +22,7 @@ pub(crate) struct Eye {
     up: f64,
 }
 
-/// The legs of a robot: ends of the limbs of this link, the lower one first.
+/// The legs of a robot: the limbs of the link `heel`.
 pub(crate) fn standing<Link: PartialEq>(shapes: &[Shape<Link>], heel: &Link) -> Vec<Leg> {
     let leg = |(cylinder, caps, ends): (usize, [usize; 2], [Point3<f64>; 2])| {
         let [ankle, hip] = if ends[0].z < ends[1].z { ends } else { [ends[1], ends[0]] };
@@ -36,17 +36,17 @@ pub(crate) fn standing<Link: PartialEq>(shapes: &[Shape<Link>], heel: &Link) -> 
     limbs(shapes).into_iter().filter_map(leg).collect()
 }
 
-/// A leg as the robot's file has it, metres in the heel's frame.
+/// A leg as in the robot's file, metres in the heel's frame.
 pub(crate) struct Leg {
     pub(crate) ankle: Point3<f64>,
     pub(crate) hip: Point3<f64>,
     pub(crate) radius: f64,
-    /// Places of its shapes.
+    /// Indices of its shapes.
     pub(crate) parts: [usize; 3],
 }
 
 impl Leg {
-    /// Shin and thigh when the trunk has moved like this.
+    /// Shin and thigh after this motion of the trunk.
     pub(crate) fn items(&self, trunk: &IsometryMatrix3<f64>, paint: Paint) -> [Item; 2] {
         let hip = trunk * self.hip;
         let knee = knee(&hip, &self.ankle);
@@ -54,14 +54,15 @@ impl Leg {
     }
 }
 
-/// The knee of a leg of two bones of one length: in front of the line from hip to ankle; on it where they are too short.
+/// The knee of a leg with two bones of equal length: in front of the line from hip to ankle, or on it if the bones are
+/// too short.
 pub(crate) fn knee(hip: &Point3<f64>, ankle: &Point3<f64>) -> Point3<f64> {
     let along = ankle - hip;
     let forward = (Vector3::x() - along * (along.x / along.norm_squared())).normalize();
     nalgebra::center(hip, ankle) + forward * (BONE * BONE - along.norm_squared() / 4.0).max(0.0).sqrt()
 }
 
-/// Eyes on the ball of a head.
+/// Eyes on a spherical head.
 pub(crate) fn eyes(head: &Shape) -> Vec<Item> {
     let Eye { radius, aside, up } = EYE;
     let (Kind::Sphere, &[skull]) = (head.kind, &head.size[..]) else { return vec![] };

@@ -1,4 +1,4 @@
-//! Robots and what is around them, to be drawn in space.
+//! Robots and their surroundings as 3-D scenes.
 
 pub(crate) mod items;
 pub(crate) mod legs;

@@ -1,4 +1,4 @@
-//! Shapes of robots as documents hold them, and which are limbs in one piece.
+//! Shapes of robots as stored in documents, and detection of limbs.
 
 use anyhow::bail;
 use kinematics::{CollisionShape, Geometry, LinkPoses, RobotModel};
@@ -7,16 +7,16 @@ use serde::{Deserialize, Serialize};
 
 use crate::rounded;
 
-/// A shape and its pose, metres: as documents hold it. `Link` says which link it is a part of: by name, then its pose is
-/// in the frame of the root; or by its place in a tree, then its pose is in the link's own frame.
+/// A shape and its pose, metres, as stored in documents. `Link` identifies its link, either by name, with a pose in the
+/// frame of the root, or by index in a tree, with a pose in the link's frame.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Shape<Link = String> {
     pub(crate) link: Link,
     pub(crate) kind: Kind,
-    /// \[radius\], \[radius, length along z\], or whole lengths along x, y, z.
+    /// \[radius\], \[radius, length along z\], or full lengths along x, y, z.
     pub(crate) size: Vec<f64>,
     pub(crate) translation: [f64; 3],
-    /// By rows.
+    /// Row-major.
     pub(crate) rotation: [f64; 9],
 }
 
@@ -28,7 +28,7 @@ pub(crate) enum Kind {
     Box,
 }
 
-/// Two spheres and a cylinder whose ends and radii differ by less than this are one limb, metres.
+/// Two spheres and a cylinder form one limb if their ends and radii differ by less than this, metres.
 const SAME: f64 = 1e-4;
 
 /// All collision shapes of a robot in these poses.
@@ -42,7 +42,7 @@ pub(crate) fn posed(robot: &RobotModel, poses: &LinkPoses<'_>) -> anyhow::Result
     robot.collision_shapes()?.iter().map(shape).collect()
 }
 
-/// A shape as documents hold it.
+/// A shape as stored in documents.
 pub(crate) fn form(geometry: &Geometry) -> anyhow::Result<(Kind, Vec<f64>)> {
     Ok(match geometry {
         Geometry::Sphere { radius } => (Kind::Sphere, vec![*radius]),
@@ -52,25 +52,25 @@ pub(crate) fn form(geometry: &Geometry) -> anyhow::Result<(Kind, Vec<f64>)> {
     })
 }
 
-/// Translation, and rotation by rows.
+/// Translation, and row-major rotation.
 pub(crate) fn numbers(pose: &IsometryMatrix3<f64>) -> ([f64; 3], [f64; 9]) {
     let rotation = pose.rotation.matrix();
     (pose.translation.vector.into(), std::array::from_fn(|at| rotation[(at / 3, at % 3)]))
 }
 
-/// The same, to a hundredth of a millimetre: what can be seen.
+/// The same, rounded to a hundredth of a millimetre, which suffices for drawing.
 pub(crate) fn seen(pose: &IsometryMatrix3<f64>) -> ([f64; 3], [f64; 9]) {
     let (translation, rotation) = numbers(pose);
     (translation.map(|value| rounded(value, 5)), rotation.map(|value| rounded(value, 6)))
 }
 
-/// A pose that a document holds.
+/// A pose from its numbers in a document.
 pub(crate) fn pose(translation: &[f64; 3], rotation: &[f64; 9]) -> IsometryMatrix3<f64> {
     let rotation = Rotation3::from_matrix_unchecked(Matrix3::from_row_slice(rotation));
     IsometryMatrix3::from_parts(Translation3::from(Vector3::from(*translation)), rotation)
 }
 
-/// Cylinders with a sphere at either end: places of all three, and the ends.
+/// Cylinders with a sphere at either end: the indices of all three, and the ends.
 pub(crate) fn limbs<Link: PartialEq>(shapes: &[Shape<Link>]) -> Vec<(usize, [usize; 2], [Point3<f64>; 2])> {
     let limb = |(at, shape)| caps(shape, shapes).map(|(caps, ends)| (at, caps, ends));
     shapes.iter().enumerate().filter_map(limb).collect()

@@ -1,4 +1,4 @@
-//! Robot, ball, table and plates of the grasp as things in space.
+//! Robot, ball, table and plates of the grasp as items of a 3-D scene.
 
 use anyhow::ensure;
 use demo_gen::UpperBody;
@@ -11,21 +11,21 @@ use crate::grasp_playback::Scene;
 use crate::scene::items::items;
 use crate::scene::shapes;
 
-/// Plates reach from the ground to this height, metres.
+/// Height of the plates, from the ground, metres.
 pub(crate) const PLATE_TOP: f64 = 1.0;
-/// The board of the table, and its legs, metres.
+/// Thickness of the table's board, and of its legs, metres.
 pub(crate) const BOARD: f64 = 0.03;
 pub(crate) const LEG: f64 = 0.05;
-/// Colours, as in HTML.
+/// Colours in HTML notation.
 pub(crate) const BALL: &str = "#f0e442";
 pub(crate) const TABLE: &str = "#efe6d6";
 pub(crate) const PLATE: &str = "#56b4e9";
 
-/// The robot in configurations of these joints, by its model: drawn is the robot that the document is about, or nothing.
+/// The robot of the model, in configurations of these joints. Only a document about this robot can be drawn.
 pub(crate) struct Actor {
     body: UpperBody,
     trunk: LinkId,
-    /// The trunk's pose while all joints are at 0.
+    /// The trunk's pose with all joints at 0.
     at_rest: IsometryMatrix3<f64>,
 }
 
@@ -40,7 +40,7 @@ impl Actor {
         Ok(Actor { body, trunk, at_rest })
     }
 
-    /// Its shapes, each painted after its link.
+    /// The robot's shapes; the link determines the paint.
     pub(crate) fn items(&self, joints: &[f64], paint: impl Fn(&str) -> Paint) -> anyhow::Result<Vec<Item>> {
         let mut workspace = Workspace::new();
         let robot = self.body.robot();
@@ -50,7 +50,7 @@ impl Actor {
     }
 }
 
-/// The ball, and the table that it lies on.
+/// The ball and the table under it.
 pub(crate) fn ball_and_table(scene: &Scene) -> Vec<Item> {
     let table = &scene.table;
     let paint = Paint::opaque(TABLE);
@@ -69,7 +69,7 @@ pub(crate) fn ball_and_table(scene: &Scene) -> Vec<Item> {
     legs.map(leg).into_iter().chain([board, ball]).collect()
 }
 
-/// The plates that stand in the plane of the wall, no wider than the table.
+/// The plates in the plane of the wall, no wider than the table.
 pub(crate) fn plates(scene: &Scene, plates: &[[Option<f64>; 2]]) -> Vec<Item> {
     let side = scene.table.half_width;
     let plate = |[from, to]: &[Option<f64>; 2]| {
@@ -81,7 +81,7 @@ pub(crate) fn plates(scene: &Scene, plates: &[[Option<f64>; 2]]) -> Vec<Item> {
     plates.iter().map(plate).collect()
 }
 
-/// The way of both hands: of the left palm, then of the right one.
+/// The paths of the left and the right palm.
 pub(crate) fn ways(palms: &[Vec<f64>], stroke: Stroke) -> [Item; 2] {
     let way = |hand: usize| {
         let points = palms.iter().map(|palms| Point3::from_slice(&palms[3 * hand..3 * hand + 3])).collect();

@@ -1,4 +1,4 @@
-//! What is not the paper's: fitted settings, and pictures that differ.
+//! Departures from the paper: fitted settings, and figures that differ.
 
 use experiments::n_fitted;
 use maud::{Markup, html};
@@ -6,14 +6,14 @@ use page::Part;
 
 use super::{Contents, pictures};
 
-/// The part on them; none where nothing of the paper was run.
+/// The part about them; `None` if the run has no printed numbers.
 pub(super) fn part(contents: &Contents<'_>, printed: usize) -> Option<Part> {
     let title = "What was fitted".to_owned();
     let body = html! { (what_was_fitted()) (pictures::otherwise(contents)) };
     (printed > 0).then(|| Part { id: "fitted".to_owned(), title, body })
 }
 
-/// What is not the paper's.
+/// The fitted settings and other departures, in words.
 fn what_was_fitted() -> Markup {
     html! {
         h2 { "What was fitted" }

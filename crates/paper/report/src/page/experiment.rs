@@ -1,4 +1,4 @@
-//! An experiment: its tables, reservations about them, its figures, what the paper leaves open.
+//! The section of one experiment: its tables, reservations, figures, and details that the paper leaves open.
 
 use maud::{Markup, html};
 use page::{emphasised, key};
@@ -39,7 +39,7 @@ pub(super) fn section(compared: &Compared<'_>, contents: &Contents<'_>) -> Marku
     }
 }
 
-/// The printed cells, and folded away what more there is to know.
+/// The printed cells, with further details folded away.
 fn printed(compared: &Compared<'_>) -> Markup {
     let scales = scales(compared);
     let columns = columns(compared);
@@ -78,7 +78,7 @@ fn curves(compared: &Compared<'_>) -> Markup {
     }
 }
 
-/// Learners side by side, where there are several.
+/// Learners side by side, in experiments that compare several.
 fn comparisons(compared: &Compared<'_>) -> Markup {
     html! {
         @if let Some(comparisons) = Comparisons::of(compared.experiment, compared.result) {

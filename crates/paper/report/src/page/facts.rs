@@ -1,4 +1,4 @@
-//! What is to be known of the run: seed, number of data sets, time.
+//! Facts about the run: seed, number of data sets, time.
 
 use experiments::Setup;
 use experiments::results::Results;
@@ -15,7 +15,7 @@ const MINUTES_FROM: f64 = 120.0;
 /// Seconds from which a time is shown in hours.
 const HOURS_FROM: f64 = 7200.0;
 
-/// A line of facts.
+/// A list of facts.
 pub(super) fn facts(contents: &Contents<'_>, all: &[Compared<'_>]) -> Markup {
     let results = &contents.sources.results;
     let run = &results.run;
@@ -37,7 +37,7 @@ pub(super) fn facts(contents: &Contents<'_>, all: &[Compared<'_>]) -> Markup {
     }
 }
 
-/// Figures, or parts of them, that would be here if their data were.
+/// Notices of figures, or parts of figures, whose data are missing.
 pub(super) fn missing(contents: &Contents<'_>) -> Markup {
     let notice = |what: &str, find: fn(&Sources) -> Vec<Figure>| {
         let names: Vec<&str> = find(contents.sources).iter().map(|figure| page::name(figure.title)).collect();
@@ -53,7 +53,7 @@ pub(super) fn missing(contents: &Contents<'_>) -> Markup {
     html! { (notice("Not drawn", undrawn)) (notice("Drawn in part", drawn_in_part)) }
 }
 
-/// How the other run went, in what was run here.
+/// Results of the other run, restricted to the experiments of this run.
 fn beside(second: &Results, all: &[Compared<'_>]) -> String {
     let here = |id: &str| {
         let mut first_readings = all.iter().filter(|compared| compared.experiment.another_reading_of.is_none());
@@ -62,7 +62,7 @@ fn beside(second: &Results, all: &[Compared<'_>]) -> String {
     Tally::of(second.experiments.iter().filter_map(|result| Some((here(&result.id)?, result)))).sentence()
 }
 
-/// Rows of a setup are measured on the same data sets.
+/// Number of data sets of an experiment; all rows of a setup share the same data sets.
 fn data_sets(compared: &Compared<'_>) -> usize {
     let rows = &compared.result.rows;
     let of_setup = |setup: &Setup| {
@@ -72,7 +72,7 @@ fn data_sets(compared: &Compared<'_>) -> usize {
     compared.experiment.setups.iter().map(of_setup).sum()
 }
 
-/// A time as people tell it.
+/// A time in a readable unit: seconds, minutes or hours.
 fn time(seconds: f64) -> String {
     if seconds < MINUTES_FROM {
         format!("{seconds:.0} s")

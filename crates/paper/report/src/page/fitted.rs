@@ -1,4 +1,4 @@
-//! What is fitted in an experiment, and how much hangs on it.
+//! The fitted settings of an experiment, and how strongly the verdicts depend on them.
 
 use std::collections::BTreeMap;
 
@@ -9,10 +9,10 @@ use maud::{Markup, html};
 use super::table::sideways;
 use crate::compared::Compared;
 
-/// So many cells are named one by one.
+/// Up to this many cells are named individually.
 const FEW: usize = 2;
 
-/// How many numbers of an experiment are fitted. Another reading of a table takes the paper at its word in one of them.
+/// Number of fitted settings of an experiment. A literal reading of a table takes one of them from the paper.
 pub(super) fn count(compared: &Compared<'_>) -> usize {
     let Experiment { id, another_reading_of: table, .. } = compared.experiment;
     let fitted = of(table.unwrap_or(id)).iter().filter(|setting| setting.class == Class::Fitted).count();
@@ -24,10 +24,10 @@ fn of(id: &str) -> Vec<Setting> {
     settings().into_iter().filter(|setting| setting.experiment == id).collect()
 }
 
-/// A table of them; another reading of a table has none of its own.
+/// A table of the settings; another reading of a table has no separate settings.
 pub(super) fn table(compared: &Compared<'_>) -> Markup {
     let settings = of(compared.experiment.id);
-    // Committed with the program, and tested.
+    // The leverage file is committed with the program and covered by a test.
     let leverage = Leverage::committed().ok();
     html! {
         @if !settings.is_empty() {
@@ -70,7 +70,7 @@ pub(super) fn table(compared: &Compared<'_>) -> Markup {
     }
 }
 
-/// Few cells by their names, many counted by what becomes of them.
+/// Names a few cells individually; counts many cells by the change of their verdicts.
 fn in_short(turned: &[Turned]) -> String {
     let all: Vec<String> = if turned.len() <= FEW {
         turned.iter().map(Turned::named).collect()

@@ -1,4 +1,4 @@
-//! The opening: what was asked and how it went.
+//! The opening: the question and the results.
 
 use std::collections::BTreeSet;
 
@@ -24,7 +24,7 @@ pub(super) fn opening(contents: &Contents<'_>, all: &[Compared<'_>]) -> Markup {
         header #glance {
             h1 { "Learn the movement, not the constraint" }
             div .first {
-                // In this order on a phone: the picture before the numbers.
+                // On a phone in this order: the picture before the numbers.
                 div {
                     p .lead {
                         "Demonstrations are made under unknown, changing constraints, which hide the policy. Howard, Klanke, Gienger, Goerick and Vijayakumar showed how to recover it ("
@@ -46,10 +46,10 @@ pub(super) fn opening(contents: &Contents<'_>, all: &[Compared<'_>]) -> Markup {
     }
 }
 
-/// Table 2's row without any constraint, which says most shortly what the method is for.
+/// Table 2's row without any constraint, which shows the purpose of the method most directly.
 const UNCONSTRAINED: &str = "unconstrained";
 
-/// The method's claim and what became of it, where that was run.
+/// The method's claim and its outcome, if the run includes Table 2.
 fn in_short(contents: &Contents<'_>, all: &[Compared<'_>]) -> Markup {
     let table2 = all.iter().find(|compared| compared.experiment.id == view::EXPERIMENT);
     let row = table2.and_then(|table2| Some((table2, table2.rows().find(|row| row.id == UNCONSTRAINED)?)));
@@ -76,12 +76,12 @@ fn in_short(contents: &Contents<'_>, all: &[Compared<'_>]) -> Markup {
     }
 }
 
-/// Metres, for people.
+/// A length in metres, shown in centimetres.
 fn centimetres(metres: f64) -> String {
     format!("{:.0}\u{a0}cm", 100.0 * metres)
 }
 
-/// The experiments with numbers in the paper in all of whose policies the naive learner errs less than PolicyAlign.
+/// The experiments with printed numbers in which the naive learner errs less than PolicyAlign for every policy.
 fn where_naive_errs_less<'a>(all: &[Compared<'a>]) -> impl Iterator<Item = &'a Experiment> {
     let is_ahead = |compared: &&Compared<'_>| {
         let comparisons = Comparisons::of(compared.experiment, compared.result);
@@ -95,7 +95,7 @@ fn where_naive_errs_less<'a>(all: &[Compared<'a>]) -> impl Iterator<Item = &'a E
     all.iter().filter(|compared| compared.is_printed()).filter(is_ahead).map(|compared| compared.experiment)
 }
 
-/// How close all numbers come, with either reading of Table 1, and how sure that is.
+/// How close all numbers are to the printed ones, for both readings of Table 1, with the statistical significance.
 fn total(total: &Tally, literal: &Tally) -> Markup {
     html! {
         @if let Some(median) = total.median_factor() {
@@ -126,7 +126,7 @@ fn close(tally: &Tally) -> String {
     format!("{close} of {all} are within a factor of 1.5")
 }
 
-/// How many cells of each experiment are reached.
+/// The number of cells per verdict, for each experiment.
 fn how_it_went(total: &Tally, all: &[Compared<'_>]) -> Markup {
     html! {
         @if total.total() > 0 {
@@ -142,7 +142,7 @@ fn how_it_went(total: &Tally, all: &[Compared<'_>]) -> Markup {
     }
 }
 
-/// What a verdict says, in short.
+/// A short explanation of a verdict.
 fn meaning(verdict: Verdict) -> &'static str {
     match verdict {
         Verdict::Agrees => "Agree: our mean is within one printed standard deviation of the printed mean.",
@@ -175,7 +175,7 @@ fn tally_of(compared: &Compared<'_>) -> Markup {
     }
 }
 
-/// The cells that are higher than printed or otherwise off; what is known of each stands under its table.
+/// The cells that are higher than printed or differ otherwise. Explanations are under their tables.
 fn not_reached(all: &[Compared<'_>]) -> Markup {
     let (others, first): (Vec<_>, Vec<_>) =
         all.iter().partition(|compared| compared.experiment.another_reading_of.is_some());

@@ -9,10 +9,10 @@ use page::{Part, emphasised};
 use crate::comparisons::CAUTION;
 use crate::legend::{MEASURES, TERMS, names};
 
-/// Its address within the page.
+/// The part's address within the page.
 pub(super) const ID: &str = "learners";
 
-/// The part on them. In the tables the words say the same where they occur.
+/// The glossary. The tables show the same explanations where the words occur.
 pub(super) fn part() -> Part {
     let title = "Learners and errors".to_owned();
     let body = html! {
@@ -35,7 +35,7 @@ pub(super) fn part() -> Part {
     Part { id: ID.to_owned(), title, body }
 }
 
-/// Its colour in the figures, where it has one.
+/// The learner's colour in the figures, if it has one.
 fn swatch(who: Method) -> Markup {
     html! { @if let Some(color) = color_of(who) { span .swatch style={ "background:" (color) } {} } }
 }

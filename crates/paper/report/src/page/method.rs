@@ -1,4 +1,4 @@
-//! How it was measured, and how to measure it again.
+//! How the results were measured, and how to repeat the measurement.
 
 use maud::html;
 use page::{Part, emphasised};

@@ -1,4 +1,4 @@
-//! The report as one page that needs nothing else: style, script and pictures are in it.
+//! The report as one self-contained page: style, script and pictures are embedded.
 
 mod departures;
 mod experiment;
@@ -23,21 +23,21 @@ use page::{Card, Document, Part};
 use super::compared::{Compared, compared};
 use crate::tally::Tally;
 
-/// The figure that says what it is about.
+/// The figure that introduces the topic.
 const OVERVIEW: &str = "overview";
 
-/// The experiment that comes first.
+/// The experiment that is shown first.
 const FIRST: &str = "table1";
 
-/// What the page shows.
+/// Contents of the page.
 pub struct Contents<'a> {
-    /// All that there are.
+    /// All known experiments.
     pub experiments: &'a [Experiment],
     /// The run.
     pub sources: &'a Sources,
-    /// The same from another seed.
+    /// A run with another seed.
     pub second: Option<&'a Results>,
-    /// Every figure that could be drawn, as SVG.
+    /// Every figure whose data exist, as SVG.
     pub figures: Vec<(Figure, String)>,
 }
 
@@ -51,14 +51,14 @@ pub fn page(contents: &Contents<'_>) -> String {
     Document { title, name, opening, parts: parts(contents, &all), style: view::STYLE }.html()
 }
 
-/// A figure on a card, under a heading that may have said its title.
+/// A figure on a card; `heading` is the heading above, which the card does not repeat as its title.
 fn card(figure: &Figure, svg: &str, heading: &str) -> Markup {
     let remark = figure.beside_paper.map(|text| ("Beside the paper's figure.", text));
     Card { id: figure.id, title: figure.title, caption: figure.caption, remark, svg }.under(heading)
 }
 
-/// All parts after the opening: the paper's first table, the robot, what was fitted, all other experiments, the idea, names,
-/// how it was measured.
+/// All parts after the opening: the paper's first table, the robot, the fitted settings, all other experiments, the idea in
+/// pictures, a glossary, and the method of measurement.
 fn parts(contents: &Contents<'_>, all: &[Compared<'_>]) -> Vec<Part> {
     let experiment = |compared: &Compared<'_>| Part {
         id: compared.experiment.id.to_owned(),

@@ -1,4 +1,4 @@
-//! Figures whose picture differs from the paper's, for the opening. What stands beside them says it in full.
+//! List of the figures that differ from the paper's. The text beside each figure gives the details.
 
 use figures::undrawn;
 use maud::{Markup, html};
@@ -6,7 +6,7 @@ use page::emphasised;
 
 use super::Contents;
 
-/// The figures of this run that differ, each with what differs. A quick run is too coarse to tell.
+/// The figures of this run that differ, each with the difference. Empty for a quick run, which is too coarse to tell.
 pub(super) fn otherwise(contents: &Contents<'_>) -> Markup {
     let undrawn = undrawn(contents.sources);
     let drawn = contents.figures.iter().map(|(figure, _)| (figure, true));

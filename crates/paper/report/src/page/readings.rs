@@ -1,4 +1,4 @@
-//! How movements of each kind are read, where that was measured.
+//! The readings of each kind of movement, if the run measured them.
 
 use maud::{Markup, html};
 
@@ -6,10 +6,10 @@ use super::table::sideways;
 use crate::compared::Compared;
 use crate::learners::{READ_AS, confusion};
 
-/// The experiment of which it is the result.
+/// The experiment that measures the readings.
 const EXPERIMENT: &str = "readings";
 
-/// A table: kinds of movements, and how many data sets of each are read as what.
+/// A table of the kinds of movements, with the number of data sets per reading.
 pub(super) fn counts(compared: &Compared<'_>) -> Markup {
     html! {
         @if compared.experiment.id == EXPERIMENT {

@@ -1,4 +1,4 @@
-//! What single numbers of an experiment do not show, and why some stand out: folded, under its table.
+//! Reservations about an experiment and explanations of single cells that stand out, folded under its table.
 
 use experiments::verdict::Verdict;
 use maud::{Markup, html};
@@ -7,7 +7,7 @@ use page::emphasised;
 use super::Contents;
 use crate::compared::{Compared, Line};
 
-/// They; nothing where there is nothing to say, or too little was run to say it.
+/// The folded reservations and explanations; empty without any, or if the run was too small to judge.
 pub(super) fn folded(compared: &Compared<'_>, contents: &Contents<'_>) -> Markup {
     let full = !contents.sources.results.quick && !compared.is_glimpse();
     let cells = if full { compared.standing_out() } else { vec![] };
@@ -34,7 +34,7 @@ fn title(standing_out: usize) -> String {
     }
 }
 
-/// The cells that need a word, each with it. Neighbours of which the same is to be said stand together.
+/// Cells that stand out, with their explanations. Neighbouring cells with the same explanation share one entry.
 fn reasons(cells: &[(Line<'_>, &str)]) -> Markup {
     html! {
         dl .reasons {
@@ -48,12 +48,12 @@ fn reasons(cells: &[(Line<'_>, &str)]) -> Markup {
     }
 }
 
-/// The word of the worst verdict among cells.
+/// The word of the worst verdict among the cells.
 fn worst(cells: &[(Line<'_>, &str)]) -> &'static str {
     cells.iter().filter_map(|(line, _)| line.cell.verdict).max().map_or("", Verdict::word)
 }
 
-/// With a capital.
+/// Capitalises the first letter.
 fn sentence(word: &str) -> String {
     let mut letters = word.chars();
     letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
@@ -79,7 +79,7 @@ mod tests {
         assert_eq!(["as in", "Über", ""].map(sentence), ["As in", "Über", ""]);
     }
 
-    /// The records show what is said without numbers, or with a number in words.
+    /// The records confirm the reservations that contain no number, or a number in words.
     #[test]
     fn reservations_are_true() {
         let said: Vec<&str> =

@@ -1,4 +1,4 @@
-//! The tables of an experiment: the paper's own layout where every row has the same measures, and all cells line by line.
+//! The tables of an experiment: the paper's layout if every row has the same measures, and a list of all cells.
 
 use std::collections::BTreeMap;
 
@@ -9,13 +9,13 @@ use page::{Reference, Scale, Strip, axis};
 use crate::compared::{Compared, Line, NOTHING, Second};
 use crate::legend::{meaning, term};
 
-/// Rows from which the paper's layout is easier to read than a list.
+/// Number of rows from which the paper's layout is easier to read than a list.
 const MANY_ROWS: usize = 4;
 
-/// One scale for each measure of an experiment; learners that are columns of one table share theirs.
+/// One scale for each measure of an experiment; the learners of one table share a scale.
 pub(super) type Scales = BTreeMap<Measure, Scale>;
 
-/// Errors of learners side by side.
+/// Errors of learners that are compared side by side.
 const SIDE_BY_SIDE: [Measure; 4] = [Measure::Naive, Measure::NaiveAll, Measure::PolicyAlign, Measure::PolicyAlignAll];
 
 pub(super) fn scales(compared: &Compared<'_>) -> Scales {
@@ -29,7 +29,7 @@ pub(super) fn scales(compared: &Compared<'_>) -> Scales {
     measures.map(|measure| (measure, scale(measure))).collect()
 }
 
-/// The measures that are printed in every row, where these are all that is printed.
+/// The measures that are printed in every row, if every row has the same ones.
 pub(super) fn columns(compared: &Compared<'_>) -> Option<Vec<Measure>> {
     let printed = |row| compared.lines_of(row).filter(is_printed).map(|line| line.measure).collect::<Vec<_>>();
     let mut rows = compared.rows().map(printed);
@@ -37,12 +37,12 @@ pub(super) fn columns(compared: &Compared<'_>) -> Option<Vec<Measure>> {
     (compared.rows().count() >= MANY_ROWS && !first.is_empty() && rows.all(|row| row == first)).then_some(first)
 }
 
-/// What the paper prints for a cell.
+/// The printed value of a cell.
 fn reference(line: &Line<'_>) -> Option<Reference> {
     line.cell.paper.map(|paper| Reference { mean: paper.mean, sd: paper.sd })
 }
 
-/// Every data set of a cell.
+/// A strip chart of all data sets of a cell.
 fn strip(line: &Line<'_>, scale: Scale) -> Markup {
     let show = |value| line.measure.show(value);
     let (mean, median) = (line.cell.mean, line.cell.median);
@@ -53,7 +53,7 @@ pub(super) fn is_printed(line: &Line<'_>) -> bool {
     line.cell.paper.is_some()
 }
 
-/// As in the paper: a line for each row, a column for each measure.
+/// A table in the paper's layout: a row for each row, a column for each measure.
 pub(super) fn grid(compared: &Compared<'_>, columns: &[Measure], scales: &Scales) -> Markup {
     html! {
         table .grid {
@@ -82,34 +82,34 @@ pub(super) fn grid(compared: &Compared<'_>, columns: &[Measure], scales: &Scales
     }
 }
 
-/// A table that is moved sideways where the page is narrower.
+/// A table that scrolls sideways if the page is narrower.
 pub(super) fn sideways(label: &str, table: &Markup) -> Markup {
     html! { div .sideways tabindex="0" role="region" aria-label=(label) { (table) } }
 }
 
-/// A name that may be broken after each of its parts, which say what they mean.
+/// A name with an optional line break after each part; each part shows its meaning as a tooltip.
 fn parts(name: &str) -> Markup {
     html! { @for (at, part) in name.split('-').enumerate() { @if at > 0 { "-" wbr; } (explained(part, term(part))) } }
 }
 
-/// A measure, which says what it is.
+/// A measure with its meaning as a tooltip.
 fn named(measure: Measure) -> Markup {
     explained(measure.label(), meaning(measure))
 }
 
-/// A word that shows its meaning when it is pointed at.
+/// A word with its meaning as a tooltip.
 fn explained(word: &str, meaning: Option<&str>) -> Markup {
     html! { @if let Some(meaning) = meaning { abbr title=(meaning) { (word) } } @else { (word) } }
 }
 
-/// Whether a list has columns for what is printed.
+/// The columns of a list: with or without the paper's values.
 #[derive(Clone, Copy, PartialEq)]
 enum Columns {
     BesidePaper,
     Alone,
 }
 
-/// A line for each cell that is wanted.
+/// A list with a line for each selected cell.
 pub(super) fn list(compared: &Compared<'_>, scales: &Scales, wanted: fn(&Line<'_>) -> bool) -> Markup {
     let with_paper = compared.lines().any(|line| wanted(&line) && is_printed(&line));
     let columns = if with_paper { Columns::BesidePaper } else { Columns::Alone };
@@ -148,7 +148,7 @@ pub(super) fn list(compared: &Compared<'_>, scales: &Scales, wanted: fn(&Line<'_
     }
 }
 
-/// Ours, and the paper's where there is any.
+/// Our value, and the paper's if `columns` includes it.
 fn cells(line: &Line<'_>, columns: Columns) -> Markup {
     html! {
         td .number data-label="Ours" {
@@ -165,7 +165,7 @@ fn cells(line: &Line<'_>, columns: Columns) -> Markup {
     }
 }
 
-/// The same from another seed.
+/// The same cell from another seed.
 fn beside(second: Second<'_>, line: &Line<'_>) -> Markup {
     html! {
         td .number data-label={ "Seed " (second.seed) } {

@@ -1,10 +1,10 @@
-//! How many cells are reached, as a bar and in words.
+//! The number of cells per verdict, as a bar and in words.
 
 use maud::{Markup, html};
 
 use crate::tally::{Tally, after};
 
-/// The bar alone; it says the same as the words beside it.
+/// The bar alone; the words beside it give the same numbers.
 pub(super) fn bar(tally: &Tally) -> Markup {
     html! {
         div .bar aria-hidden="true" {
@@ -15,7 +15,7 @@ pub(super) fn bar(tally: &Tally) -> Markup {
     }
 }
 
-/// The numbers, each with its colour and words.
+/// The numbers, each with its colour and verdict.
 pub(super) fn words(tally: &Tally) -> Markup {
     html! {
         ul .counts {

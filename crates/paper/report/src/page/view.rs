@@ -1,4 +1,4 @@
-//! The grasp to walk around in: the robot, the wall and everybody's hand paths, drawn by a script of the page.
+//! The 3-D view of the grasp: the robot, the wall and every learner's hand paths, drawn by a script of the page.
 
 use figures::Sources;
 use figures::view::{Staged, colors, staged};
@@ -7,18 +7,18 @@ use page::Part;
 
 use super::Contents;
 
-/// The experiment that it shows.
+/// The experiment that the view shows.
 pub(super) const EXPERIMENT: &str = "table2";
 
-/// The figure data that it plays.
+/// The figure data that the view plays back.
 const DOCUMENT: &str = "grasp_playback";
 
-/// Where on the page it is.
+/// The view's address within the page.
 const PLACE: &str = "walk";
 
 pub(super) const STYLE: &str = include_str!("../../view/view.css");
 
-/// In this order one script.
+/// Parts of the script, concatenated in this order.
 const SCRIPT: [&str; 13] = [
     include_str!("../../view/matrix.js"),
     include_str!("../../view/robot.js"),
@@ -38,8 +38,8 @@ const SCRIPT: [&str; 13] = [
 const START: &str = "startView(document.getElementById(\"view\"), \
                      JSON.parse(document.getElementById(\"grasp-playback\").textContent));";
 
-/// The view; none where a run has not computed what it plays. The first figure of its experiment is pointed to where it
-/// cannot be drawn.
+/// The view; `None` if the run has not computed its data. If a browser cannot draw the view, it refers to the
+/// experiment's first figure.
 pub(super) fn part(contents: &Contents<'_>) -> Option<Part> {
     let Staged { stopped, playback } = contents.sources.documents.get(DOCUMENT).and_then(staged)?;
     let still = contents.figures.iter().find(|(figure, _)| figure.experiment == Some(EXPERIMENT));
@@ -64,7 +64,7 @@ pub(super) fn part(contents: &Contents<'_>) -> Option<Part> {
     Some(Part { id: PLACE.to_owned(), title, body })
 }
 
-/// Why the expert stops, where it does.
+/// The explanation of why the expert stops from some starts.
 fn held(stopped: &[usize]) -> String {
     let numbers: Vec<String> = stopped.iter().map(usize::to_string).collect();
     if numbers.is_empty() {
@@ -78,7 +78,7 @@ fn held(stopped: &[usize]) -> String {
     )
 }
 
-/// A way to the view.
+/// A link to the view.
 pub(super) fn way(sources: &Sources) -> Markup {
     html! {
         @if sources.documents.contains_key(DOCUMENT) {
@@ -87,7 +87,7 @@ pub(super) fn way(sources: &Sources) -> Markup {
     }
 }
 
-/// JSON that cannot end the element that it stands in.
+/// Escapes JSON so that it cannot close the `script` element around it.
 fn within_script(json: &str) -> String {
     json.replace('<', "\\u003c")
 }

@@ -1,4 +1,4 @@
-//! Flags from a file.
+//! Flags from a configuration file.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -13,7 +13,7 @@ use crate::cli::options::flags::{FitFlags, PrepareFlags, ReadFlags, given};
 use crate::cli::options::rollout_flags::RollOutFlags;
 use crate::cli::session::Session;
 
-/// A configuration file: a table for every group of flags.
+/// A configuration file: one table for each group of flags.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Config {
     tables: Table,
@@ -21,7 +21,7 @@ pub(crate) struct Config {
 }
 
 impl Config {
-    /// The file that the user named, or an empty one.
+    /// Reads the file that the user named; empty without one.
     pub(crate) fn of(session: &Session) -> Result<Config, Failure> {
         let Some(path) = &session.config else { return Ok(Config::default()) };
         let text = demo_io::read_text(path).map_err(|error| Failure::reading(path, error))?;
@@ -54,7 +54,7 @@ impl Config {
         Ok(Config { tables, place: displayed(path) })
     }
 
-    /// Flags, and the file's where there are none.
+    /// The given flags; missing ones are taken from the file.
     pub(crate) fn under<F: Serialize + DeserializeOwned + Clone>(&self, name: &str, flags: &F) -> Result<F, Failure> {
         if self.tables.is_empty() {
             return Ok(flags.clone());
@@ -80,7 +80,7 @@ impl Config {
     }
 }
 
-/// The groups of flags, as arguments of a command each.
+/// The groups of flags, each as the arguments of a command.
 fn groups() -> impl Iterator<Item = (&'static str, Command)> {
     let command = |name: &'static str| Command::new(name);
     [
@@ -92,12 +92,12 @@ fn groups() -> impl Iterator<Item = (&'static str, Command)> {
     .into_iter()
 }
 
-/// Flags with `_`.
+/// The names of flags with `_` instead of `-`.
 fn keys(command: &Command) -> Vec<String> {
     command.get_arguments().filter_map(clap::Arg::get_long).map(|long| long.replace('-', "_")).collect()
 }
 
-/// A name must be known; else the nearest one is named.
+/// Refuses an unknown name and suggests the nearest known one.
 fn check(name: &str, known: &[String], what: &str, text: &str, path: &Path) -> Result<(), Failure> {
     if known.iter().any(|other| other == name) {
         return Ok(());
@@ -109,7 +109,7 @@ fn check(name: &str, known: &[String], what: &str, text: &str, path: &Path) -> R
     Err(Failure::usage(format!("unknown {what} '{name}'"), format!("{}, line {line}", displayed(path)), remedy))
 }
 
-/// A complete file: every key with its help, those without a value as comments.
+/// A complete file: every key with its help; keys without a value are commented out.
 pub(crate) fn printed(read: &ReadFlags, prepare: &PrepareFlags, fit: &FitFlags) -> Result<String, Failure> {
     let wrong = |error: toml::ser::Error| Failure::usage(error.to_string(), "flags", "--help");
     let set = [given(read), given(prepare), given(fit), Ok(Table::new())];
@@ -132,7 +132,7 @@ pub(crate) fn printed(read: &ReadFlags, prepare: &PrepareFlags, fit: &FitFlags) 
     Ok(text)
 }
 
-/// A value that the key may have.
+/// An example value of the key.
 fn example(argument: &clap::Arg) -> String {
     if !argument.get_action().takes_values() {
         return "true".to_owned();
@@ -210,7 +210,7 @@ mod tests {
         let text = printed(&ReadFlags::default(), &PrepareFlags::default(), &given).unwrap();
         let fit = parsed(&text).unwrap().under("fit", &FitFlags::default()).unwrap();
         assert_eq!(fit, given);
-        // With every comment taken away it is a file, too.
+        // With all keys uncommented, the file is still valid.
         let keys = text.lines().filter(|line| line.starts_with("# ") && line.contains(" = "));
         assert!(keys.count() > 25, "{text}");
     }

@@ -17,15 +17,15 @@ use toml::{Table, Value};
 use crate::cli::failure::Failure;
 use crate::cli::options::values::urdf;
 
-/// What the flag of a choice takes.
+/// The parser for the words of a choice.
 fn words<C: Choice>() -> PossibleValuesParser {
     PossibleValuesParser::new(C::WORDS.iter().map(|(word, _)| *word))
 }
 
-/// Flags of reading that the help of every command lists; `check --help` lists the others, too.
+/// Flags for reading that every command's help lists; `check --help` also lists the others.
 const USUAL: [&str; 7] = ["state", "velocity", "context", "time", "episode", "ignore", "dt"];
 
-/// Flags of reading that only `check --help` lists.
+/// Flags for reading that only `check --help` lists.
 pub(crate) fn rare() -> HashSet<Id> {
     let reading = ReadFlags::augment_args(Command::new("read"));
     let is_rare = |flag: &&Arg| flag.get_long().is_some_and(|long| !USUAL.contains(&long));
@@ -180,7 +180,7 @@ pub(crate) struct FitFlags {
     pub(crate) hold_out: Vec<String>,
 }
 
-/// The flags that are given, by their keys in a configuration file: lists with entries, switches that are on.
+/// The flags that are set, by their keys in a configuration file: lists with entries, and switches that are on.
 pub(crate) fn given(flags: &impl Serialize) -> Result<Table, toml::ser::Error> {
     let mut table = Table::try_from(flags)?;
     table.retain(|_, value| match value {
@@ -192,7 +192,7 @@ pub(crate) fn given(flags: &impl Serialize) -> Result<Table, toml::ser::Error> {
 }
 
 impl ReadFlags {
-    /// The channels of a model, unless others are given.
+    /// Uses the channels of a model unless others are given.
     pub(crate) fn with_channels_of(mut self, model: &Model) -> Self {
         if self.state.is_empty() {
             self.state = model.channels();
@@ -203,7 +203,7 @@ impl ReadFlags {
         self
     }
 
-    /// Which of the channels that were read are context.
+    /// How the context channels that were read are used.
     pub(crate) fn context_use(&self, named: Vec<String>) -> ContextUse {
         match &self.context[..] {
             [] => ContextUse::Auto,
@@ -212,11 +212,11 @@ impl ReadFlags {
         }
     }
 
-    /// Flags have the names of the options, and of a configuration file.
+    /// The flags have the names of the options and of the configuration file's keys.
     pub(crate) fn options(&self) -> Result<ReadOptions, Failure> {
         let wrong = |error: &dyn std::fmt::Display| Failure::usage(error.to_string(), "flags for reading", "--help");
         let mut table = given(self).map_err(|error| wrong(&error))?;
-        // What was read is trimmed afterwards.
+        // Recordings are trimmed after reading.
         table.remove("trim_still");
         if self.context == [NO_CONTEXT] {
             table.remove("context");
@@ -227,7 +227,7 @@ impl ReadFlags {
 }
 
 impl PrepareFlags {
-    /// With everything but the context, which what was read decides.
+    /// All options except the context, which depends on the recordings.
     pub(crate) fn options(&self, dt: Option<f64>) -> Result<PrepareOptions, Failure> {
         let scale = self.scale.iter().map(|text| {
             let pair = text.split_once('=').and_then(|(name, factor)| Some((name.to_owned(), factor.parse().ok()?)));

@@ -1,4 +1,4 @@
-//! Flags, and files of them.
+//! Flags and configuration files.
 
 pub(crate) mod config;
 pub(crate) mod flags;

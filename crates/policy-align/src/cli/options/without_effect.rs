@@ -1,4 +1,5 @@
-//! Flags of the command line that would have no effect. Those of a configuration file may be there for other commands.
+//! Refuses flags on the command line that would have no effect. Flags in a configuration file may be meant for other
+//! commands.
 
 use policy_align::{Choice as _, LearnerChoice};
 use serde::Serialize;
@@ -7,7 +8,7 @@ use crate::cli::failure::Failure;
 use crate::cli::options::flags::{FitFlags, ReadFlags, given};
 use crate::cli::options::rollout_flags::RollOutFlags;
 
-/// Flags of learning that only some learners use, and these.
+/// Flags that only some learners use, with these learners.
 const OF_LEARNERS: [(&str, &[LearnerChoice]); 5] = [
     ("bandwidth", &[LearnerChoice::PolicyAlign]),
     ("init_d", &[LearnerChoice::PolicyAlign]),
@@ -29,7 +30,7 @@ pub(crate) fn of_learner(flags: &FitFlags, learner: LearnerChoice) -> Result<(),
     Err(Failure::usage(format!("{flag} has no effect with --learner {own}"), flag, remedy))
 }
 
-/// Refuses flags of reading, but `--context`, where no file is read.
+/// Refuses flags for reading, except `--context`, when no file is read.
 pub(crate) fn of_reading(flags: &ReadFlags) -> Result<(), Failure> {
     match keys(flags).iter().find(|(key, _)| key != "context") {
         Some((key, _)) => {
@@ -41,17 +42,17 @@ pub(crate) fn of_reading(flags: &ReadFlags) -> Result<(), Failure> {
     }
 }
 
-/// The first of these flags that is given.
+/// The first of these flags that is set.
 pub(crate) fn of_roll_outs(flags: &RollOutFlags) -> Option<String> {
     keys(flags).first().map(|(key, _)| flag(key))
 }
 
-/// The flag of a key.
+/// The flag for a key.
 fn flag(key: &str) -> String {
     format!("--{}", key.replace('_', "-"))
 }
 
-/// Keys and values of what is given; what no table can hold is refused elsewhere.
+/// Keys and values of the flags that are set. Values that no table can hold are refused elsewhere.
 fn keys(flags: &impl Serialize) -> Vec<(String, String)> {
     let value = |value: &toml::Value| value.as_str().unwrap_or_default().to_owned();
     given(flags).map_or_else(|_| Vec::new(), |table| table.iter().map(|(key, of)| (key.clone(), value(of))).collect())

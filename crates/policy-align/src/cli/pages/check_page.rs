@@ -1,4 +1,4 @@
-//! The page of a check: what is known before learning.
+//! The page of `check`: results that are available before learning.
 
 use maud::{Markup, html};
 use motion::Trajectory;
@@ -13,9 +13,9 @@ use crate::cli::pages::numbers_table::{COVERAGE, Good, NOISE, numbers as table};
 use crate::cli::pages::page_parts::{channels, decisions, left_out, opening, page, part};
 use crate::cli::pages::picture::{DEMONSTRATED, MARKED, with_unit};
 
-/// Empty space around what is drawn, as a share of its range.
+/// Margin around the drawing, as a share of its range.
 const MARGIN: f64 = 0.06;
-/// Movements that are drawn, at most.
+/// Largest number of movements in the picture.
 const DRAWN: usize = 200;
 
 const SENTENCES: [&str; 3] = [
@@ -24,7 +24,8 @@ const SENTENCES: [&str; 3] = [
     "Do not learn from these recordings as they are.",
 ];
 
-/// The page of recordings. `coverage`: how evenly directions are observed, and the one observed least, (n).
+/// The page of recordings. `coverage`: how evenly directions are observed, and the least observed
+/// direction, (n).
 pub(crate) fn check_page(prepared: &Prepared, name: &str, coverage: (f64, &DVector<f64>)) -> String {
     let title = format!("What was recorded in {name}");
     let data = html! {
@@ -46,7 +47,7 @@ pub(crate) fn check_page(prepared: &Prepared, name: &str, coverage: (f64, &DVect
     page(&title, name, opening, parts)
 }
 
-/// The first two channels against each other.
+/// The first two channels plotted against each other.
 fn movements(prepared: &Prepared) -> Markup {
     let channels = [&prepared.state[0], &prepared.state[1]];
     let drawn = evenly(prepared.demonstrations.trajectories(), DRAWN);

@@ -1,32 +1,33 @@
-//! Constraints that were found, in a picture of two channels: what each keeps to, and its normal.
+//! Marks of the estimated constraints in a picture of two channels: the line that each allows, and its normal.
 
 use nalgebra::{DMatrix, DVector};
 use plot::{Dash, Layer, Stroke};
 use policy_align::gp::Acting;
 use policy_align::{ConstraintOn, ConstraintStretch, Prepared, StateChannel};
 
-/// Constraints that are drawn, at most: evenly many of more.
+/// Largest number of constraints in the picture, evenly selected.
 const DRAWN: usize = 60;
-/// Half the length of a line, and the length of a normal in the plane of the picture, as a share of its smaller side.
+/// Half the length of a line, and the length of a normal in the plane of the picture, as a share of the picture's smaller side.
 const LENGTH: f64 = 0.04;
-/// Part of a normal in the plane of the picture below which nothing is drawn: the constraint lies nearly in it.
+/// Nothing is drawn if the normal's part in the plane of the picture is smaller than this: the constraint is nearly parallel to the
+/// plane.
 const LEAST_PART: f64 = 0.2;
 const COLOR: &str = "#7b3294";
 const KEPT: Stroke = Stroke { color: COLOR, width: 1.8, dash: Dash::Solid };
 const MOVING: Stroke = Stroke { color: COLOR, width: 1.8, dash: Dash::Dashed };
 
-/// A constraint on the channels, and the state half way along its stretch, (n) in units of the recording.
+/// A constraint on the channels, and the state half way along its stretch, (n), in units of the recording.
 pub(crate) struct Held {
     state: DVector<f64>,
     normals: Vec<DVector<f64>>,
-    /// Whether its right side is not 0, of each row.
+    /// For each row, whether its right-hand side differs from 0.
     moves: Vec<bool>,
 }
 
-/// A line through points, and whether it moves.
+/// The points of a line, and whether the constraint moves.
 type Line = (Vec<(f64, f64)>, bool);
 
-/// Those of some stretches, at most as many as are drawn.
+/// The constraints on channels among these stretches, at most as many as are drawn.
 pub(crate) fn held(found: &[ConstraintStretch], prepared: &Prepared) -> Vec<Held> {
     let on_channels =
         |stretch: &&ConstraintStretch| stretch.acting == Acting::Constraint && stretch.on == ConstraintOn::Channels;
@@ -46,7 +47,8 @@ pub(crate) fn held(found: &[ConstraintStretch], prepared: &Prepared) -> Vec<Held
     all.iter().step_by(all.len().div_ceil(DRAWN).max(1)).filter_map(of).collect()
 }
 
-/// The sample half way along the path from one to another: movements that come to rest have most samples there.
+/// The sample half way along the path between two samples. The middle sample would not do: movements that come to rest have most
+/// samples there.
 fn middle(states: &DMatrix<f64>, (first, last): (usize, usize)) -> usize {
     let step = |at: usize| (states.column(at + 1) - states.column(at)).norm();
     let half = 0.5 * (first..last).map(step).sum::<f64>();
@@ -59,20 +61,20 @@ fn middle(states: &DMatrix<f64>, (first, last): (usize, usize)) -> usize {
         .unwrap_or(first)
 }
 
-/// The movements that were prepared, (n, N) each, in units of the recording.
+/// The prepared movements, (n, N) each, in units of the recording.
 pub(crate) fn recorded(prepared: &Prepared) -> Vec<DMatrix<f64>> {
     let movements = prepared.demonstrations.trajectories().iter();
     movements.map(|movement| as_recorded(movement.states(), prepared)).collect()
 }
 
-/// States or velocities of a movement that was prepared, (n, N), in units of the recording.
+/// States or velocities of a prepared movement, (n, N), in units of the recording.
 pub(crate) fn as_recorded(values: &DMatrix<f64>, prepared: &Prepared) -> DMatrix<f64> {
     // Not the model's scales, which it may have learnt.
     DMatrix::from_fn(values.nrows(), values.ncols(), |k, i| values[(k, i)] / prepared.state[k].scale)
 }
 
-/// Where the plane of a constraint of one row cuts that of the picture, through the place held, and the parts of all normals in it.
-/// Channels are drawn times their `factors`; `side` is the smaller side of the picture.
+/// Marks constraints at their states: the line in which a constraint of one row intersects the plane of the picture, and the
+/// components of all normals in that plane. Channels are multiplied by their `factors`; `side` is the smaller side of the picture.
 pub(crate) fn marks(
     held: &[Held],
     channels: &[StateChannel],
@@ -114,8 +116,8 @@ pub(crate) fn marks(
     layers
 }
 
-/// The part of a row of A, (n) in units of the recording, in the plane of the picture, as a share of its length in the units in
-/// which constraints are at right angles.
+/// The components of a row of A, (n) in units of the recording, in the plane of the picture, divided by the row's length. Lengths
+/// are in the units in which constraints project orthogonally.
 fn in_picture(normal: &DVector<f64>, channels: &[StateChannel], dims: [usize; 2]) -> (f64, f64) {
     let scaled = DVector::from_fn(normal.len(), |k, _| normal[k] / channels[k].scale);
     let length = scaled.norm();
@@ -130,7 +132,7 @@ mod tests {
     use super::*;
 
     proptest! {
-        /// Half of the path lies before the middle, up to a step, however the samples are spread along it.
+        /// Up to one step, half of the path lies before the middle, however the samples are distributed along it.
         #[test]
         fn the_middle_is_half_way(steps in prop::collection::vec(0.0..1.0f64, 1..40), first in 0usize..40, last in 0usize..40) {
             let (first, last) = (first.min(last).min(steps.len()), first.max(last).min(steps.len()));
@@ -142,8 +144,8 @@ mod tests {
             prop_assert!(places[at] <= half + 1e-9 && (at == last || places[at + 1] >= half - 1e-9));
         }
 
-        /// A line is where the constraint keeps its place, right across its normal, and through it; what lies in the picture's plane
-        /// is not drawn.
+        /// A line keeps the constraint, is perpendicular to its normal, and passes through the place. A normal that is perpendicular
+        /// to the plane of the picture is not drawn.
         #[test]
         fn lines_keep_the_constraint(normal in prop::array::uniform3(-1.0..1.0f64), place in prop::array::uniform3(-2.0..2.0f64), moves: bool) {
             let normal = DVector::from_column_slice(&normal);

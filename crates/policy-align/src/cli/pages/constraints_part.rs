@@ -1,4 +1,4 @@
-//! The constraints that were found, on the trust page.
+//! The estimated constraints on the trust page.
 
 use std::collections::BTreeMap;
 
@@ -10,12 +10,12 @@ use policy_align::{ConstraintStretch, Model, Prepared, estimate_constraints};
 use crate::cli::lines::short;
 use crate::cli::pages::page_parts::{constraints, part};
 
-/// Constraints that are listed, at most.
+/// Largest number of constraints in the list.
 const LISTED: usize = 12;
-/// Movements times the cube of the dimension from which the search takes longer than a page may.
+/// Movements times the cube of the dimension; above this the search takes too long for a page.
 const MOST: usize = 20_000;
 
-/// What acted on the movements, stretch by stretch: none unless the data show constraints.
+/// The constraint, or its absence, on each stretch of the movements; `None` unless the data show constraints.
 pub(crate) fn found(model: &Model, prepared: &Prepared) -> Option<Vec<ConstraintStretch>> {
     let effort = prepared.episodes.len() * model.state.len().pow(3);
     if model.trust.numbers.reading != Hypothesis::Constrained || effort > MOST {
@@ -24,7 +24,7 @@ pub(crate) fn found(model: &Model, prepared: &Prepared) -> Option<Vec<Constraint
     estimate_constraints(model, prepared, None).ok()
 }
 
-/// A table of what acted, the most frequent constraints first: none if there are no constraints.
+/// A table of the constraints, the most frequent first; `None` without constraints.
 pub(crate) fn constraints_part(found: &[ConstraintStretch], model: &Model) -> Option<Part> {
     let mut alike: BTreeMap<String, Vec<&ConstraintStretch>> = BTreeMap::new();
     for stretch in found.iter().filter(|stretch| stretch.acting == Acting::Constraint) {

@@ -1,4 +1,4 @@
-//! Where the policy is uncertain, and which movements it does not predict.
+//! A map of the policy's uncertainty, and the movements that it does not predict.
 
 use motion::LearntPolicy as _;
 use nalgebra::{DMatrix, DVector};
@@ -14,7 +14,7 @@ use crate::cli::pages::picture::{Picture, unknown};
 
 /// Grid points along the longer axis.
 const GRID: usize = 49;
-/// Movements that are drawn, at most: evenly many of more.
+/// Largest number of movements in the map, evenly selected.
 const DRAWN: usize = 60;
 const SIZE: (f64, f64) = (540.0, 480.0);
 const TITLE: &str = "Where it is uncertain";
@@ -22,7 +22,7 @@ const SEEN: Stroke = Stroke { color: "#ffffff", width: 0.9, dash: Dash::Solid };
 const MISSED: Stroke = Stroke { color: "#d55e00", width: 2.0, dash: Dash::Dashed };
 
 /// The predicted standard deviation of the action in the plane of the first two channels, and the movements that were not predicted
-/// when they were left out; none of a learner that predicts no deviation, or of one channel.
+/// when left out. `None` if the learner predicts no deviation or there is only one channel.
 pub(crate) fn error_map(model: &Model, prepared: &Prepared) -> Option<Part> {
     if model.state.len() < 2 {
         return None;
@@ -48,7 +48,7 @@ pub(crate) fn error_map(model: &Model, prepared: &Prepared) -> Option<Part> {
     if !(most > 0.0 && most.is_finite()) {
         return None;
     }
-    // Under the grey, where they would take the colours.
+    // Limits values below the grey, where they would use up the colour range.
     values.iter_mut().flatten().for_each(|share| *share = share.min(most));
     let name = "σ (%)".to_owned();
     let field = Field::new(x.clone(), y.clone(), values)
@@ -92,7 +92,7 @@ pub(crate) fn error_map(model: &Model, prepared: &Prepared) -> Option<Part> {
     Some(part("errors", TITLE, &card.under(TITLE)))
 }
 
-/// Places on either axis, in the middle of its range, as far from each other on both: colours are drawn in squares.
+/// Grid coordinates on either axis, centred in its range and with the same spacing on both, because colours are drawn in squares.
 fn grid(range: [[f64; 2]; 2]) -> [Vec<f64>; 2] {
     let [width, height] = range.map(|[from, to]| to - from);
     let step = width.max(height) / (GRID - 1) as f64;
@@ -103,7 +103,7 @@ fn grid(range: [[f64; 2]; 2]) -> [Vec<f64>; 2] {
     })
 }
 
-/// The same places with their middles between them.
+/// The coordinates and the midpoints between them.
 fn finer(places: &[f64]) -> Vec<f64> {
     let pairs = places.windows(2).flat_map(|pair| [pair[0], 0.5 * (pair[0] + pair[1])]);
     pairs.chain(places.last().copied()).collect()
@@ -116,7 +116,7 @@ mod tests {
     use super::*;
 
     proptest! {
-        /// Squares, within the range, that leave less than one of them out.
+        /// The cells are squares within the range, and the uncovered rest is smaller than one cell.
         #[test]
         fn the_grid_is_of_squares(from in prop::array::uniform2(-9.0..9.0f64), size in prop::array::uniform2(0.01..9.0f64)) {
             let range = [[from[0], from[0] + size[0]], [from[1], from[1] + size[1]]];

@@ -1,4 +1,4 @@
-//! Movements that were left out, and the speed that the policy of the others predicts along them.
+//! Left-out movements, and the speed along them that the policy learnt from the others predicts.
 
 use maud::html;
 use motion::Trajectory;
@@ -10,21 +10,21 @@ use text::plain;
 use crate::cli::pages::movements::simplified;
 use crate::cli::pages::page_parts::part;
 
-/// Rows of a movement that are drawn, at most.
+/// Largest number of rows of a movement in a curve.
 const DRAWN: usize = 60;
-/// How far curves of fewer points may be from these, as a share of the axes.
+/// Largest distance of a simplified curve from the original, as a share of the axes.
 const FLAT: f64 = 4e-3;
-/// Empty space above and below, as a share of the range.
+/// Margin above and below, as a share of the range.
 const MARGIN: f64 = 0.08;
-/// One or two movements are not left out.
+/// Least number of movements for cross-validation.
 const LEAST: usize = 3;
 const SIZE: (f64, f64) = (370.0, 280.0);
 const TITLE: &str = "Left out and predicted";
 const SEEN: Stroke = Stroke { color: "#56a0d3", width: 2.0, dash: Dash::Solid };
 const PREDICTED: Stroke = Stroke { color: "#d55e00", width: 1.6, dash: Dash::Dashed };
 
-/// Of the movements with the largest, the median and the least error when left out, the speed that was seen and the one that is
-/// predicted along it from all others; none where movements were not left out, or their parts along the motion are not known.
+/// For the movements with the largest, the median and the least left-out error: the observed speed, and the speed along the
+/// movement predicted from all others. `None` without cross-validation, or if the parts along the motion are not known.
 pub(crate) fn left_out_part(model: &Model, prepared: &Prepared) -> Option<Part> {
     if prepared.episodes.len() < LEAST {
         return None;
@@ -42,7 +42,7 @@ pub(crate) fn left_out_part(model: &Model, prepared: &Prepared) -> Option<Part> 
     }
     let card = |(name, episode, rows): &(&str, usize, Vec<&PredictedSpeed>)| {
         let movement = &prepared.demonstrations.trajectories()[*episode];
-        // Names may be long: they stand below the picture, where they are broken.
+        // Names may be long, so they are placed below the picture, where they can be wrapped.
         let (title, own) = (format!("{name} error"), format!("Episode {}.", prepared.episodes[*episode]));
         let svg = plot::Picture::rows(&[&[&curves(model, movement, rows, &title)]]).svg();
         let id = format!("left-out-{}", name.to_lowercase());
@@ -63,7 +63,7 @@ pub(crate) fn left_out_part(model: &Model, prepared: &Prepared) -> Option<Part> 
     Some(part("left-out", TITLE, &body))
 }
 
-/// Speed along a movement over time, seen and predicted, in units of the model.
+/// Speed along a movement over time, observed and predicted, in units of the model.
 fn curves(model: &Model, movement: &Trajectory, rows: &[&PredictedSpeed], title: &str) -> Curves {
     let every = rows.len().div_ceil(DRAWN).max(1);
     let point = |row: &&PredictedSpeed| (movement.seconds(0, row.index.sample), row.seen, row.predicted);
@@ -97,7 +97,7 @@ fn curves(model: &Model, movement: &Trajectory, rows: &[&PredictedSpeed], title:
     }
 }
 
-/// The unit of a speed: that of all channels, where they have one and count alike.
+/// The unit of a speed, if all channels have the same unit and scale.
 fn unit(model: &Model) -> String {
     let first = &model.state[0];
     let alike = |of: fn(&StateChannel, &StateChannel) -> bool| model.state.iter().all(|channel| of(channel, first));
@@ -108,7 +108,7 @@ fn unit(model: &Model) -> String {
     }
 }
 
-/// A round step that makes three to six parts of a range.
+/// A round step that divides a range into three to six parts.
 fn step(range: f64) -> f64 {
     let tenth = 10f64.powf((range / 3.0).log10().floor());
     [5.0, 2.0, 1.0].map(|of| of * tenth).into_iter().find(|step| range / step >= 2.0).unwrap_or(tenth)

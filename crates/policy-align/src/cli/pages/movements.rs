@@ -1,15 +1,15 @@
-//! Movements in a picture of two channels: their paths, where they start, and which way they go.
+//! Movements in a picture of two channels: their paths, starts and directions.
 
 use plot::{Layer, Stroke};
 
-/// Points whose distance from a path's chord is less than this share of the picture are left out of it.
+/// Points closer to a path's chord than this share of the picture are omitted.
 const FLAT: f64 = 1e-3;
-/// Length of a mark of direction as a share of the picture's smaller side, and radius of the dot at a start, pixels.
+/// Length of a direction mark as a share of the picture's smaller side, and radius of the dot at a start in pixels.
 const LENGTH: f64 = 0.03;
 const START: f64 = 2.6;
 
-/// Layers of some movements, each given by its points as drawn: lines, a dot where each starts, an arrow half way along. `range` is
-/// from and to on either axis; `label` names the lines in the legend; at most `marked` movements have an arrow, evenly many of more.
+/// Layers for movements given by their points as drawn: lines, a dot at each start, an arrow half way along. `range` holds the
+/// limits of either axis; `label` names the lines in the legend; at most `marked` evenly selected movements have an arrow.
 pub(crate) fn movements(
     paths: &[Vec<(f64, f64)>],
     range: [[f64; 2]; 2],
@@ -39,12 +39,12 @@ pub(crate) fn movements(
     layers
 }
 
-/// At most `most` of these, equally far from each other.
+/// At most `most` of these, evenly spaced.
 pub(crate) fn evenly<T>(all: &[T], most: usize) -> impl Iterator<Item = &T> + Clone {
     all.iter().step_by(all.len().div_ceil(most).max(1))
 }
 
-/// The place half way along a path, and its direction there, of length 1; none of a path without length.
+/// The point half way along a path, and the unit direction there; `None` for a path without length.
 fn half_way(path: &[(f64, f64)]) -> Option<((f64, f64), (f64, f64))> {
     let steps = || path.windows(2).map(|pair| (pair[0], (pair[1].0 - pair[0].0, pair[1].1 - pair[0].1)));
     let half = 0.5 * steps().map(|(_, (u, v))| u.hypot(v)).sum::<f64>();
@@ -58,7 +58,7 @@ fn half_way(path: &[(f64, f64)]) -> Option<((f64, f64), (f64, f64))> {
     })
 }
 
-/// A path with fewer points, no further from it than `flat` (Ramer, Douglas and Peucker), with its ends.
+/// A path with fewer points that deviates at most `flat` from the original (Ramer, Douglas and Peucker) and keeps its ends.
 pub(crate) fn simplified(path: &[(f64, f64)], flat: f64) -> Vec<(f64, f64)> {
     if path.len() < 3 {
         return path.to_vec();
@@ -76,7 +76,7 @@ pub(crate) fn simplified(path: &[(f64, f64)], flat: f64) -> Vec<(f64, f64)> {
     path.iter().zip(kept).filter_map(|(&point, kept)| kept.then_some(point)).collect()
 }
 
-/// From a point to the segment between two others.
+/// Distance of a point from the segment between two others.
 fn distance((x, y): (f64, f64), from: (f64, f64), to: (f64, f64)) -> f64 {
     let (u, v) = (to.0 - from.0, to.1 - from.1);
     let squared = u * u + v * v;
@@ -97,7 +97,7 @@ mod tests {
     }
 
     proptest! {
-        /// What is left out is near what is drawn, and ends stay.
+        /// Omitted points are near the drawn path, and its ends are kept.
         #[test]
         fn fewer_points_draw_the_same_path(path in path(), flat in 0.0..0.5f64) {
             let drawn = simplified(&path, flat);
@@ -109,7 +109,7 @@ mod tests {
             prop_assert_eq!(simplified(&path, 0.0).len() <= path.len(), true);
         }
 
-        /// As much of the path lies before the place as behind it.
+        /// The path is equally long before and after this point.
         #[test]
         fn half_of_the_path_is_half_way(path in path()) {
             let length = |path: &[(f64, f64)]| path.windows(2).map(|p| (p[1].0 - p[0].0).hypot(p[1].1 - p[0].1)).sum::<f64>();

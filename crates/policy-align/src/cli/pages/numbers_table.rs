@@ -1,4 +1,4 @@
-//! Numbers in a table, and which of them are not good.
+//! A table of numbers that marks those that are not good.
 
 use maud::{Markup, html};
 use policy_align::TrustNumbers;
@@ -8,27 +8,27 @@ use crate::cli::pages::page_parts::{Column, table};
 
 const COLUMNS: [Column; 3] = [("What", ""), ("Value", "value"), ("Good is", "")];
 
-/// Numbers that both pages have, and which are good.
+/// Numbers on both pages, with their criteria.
 pub(crate) const COVERAGE: (&str, Good) =
     ("Coverage of the least observed direction; 1 if all are alike", Good::Above(TrustNumbers::GOOD_COVERAGE));
 pub(crate) const NOISE: (&str, Good) = ("Share of noise in the squared steps", Good::Below(0.1));
 
-/// Which values of a number are good.
+/// Criterion for a good value of a number.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Good {
-    /// Less than this.
+    /// Good if below this.
     Below(f64),
-    /// More than this.
+    /// Good if above this.
     Above(f64),
-    /// As these words say; no value is bad by itself.
+    /// The criterion in words; no value alone is bad.
     Words(&'static str),
 }
 
 impl Good {
-    /// A number that is good or bad only next to others.
+    /// A number that is only meaningful in comparison.
     pub(crate) const COMPARED: Good = Good::Words("for comparison");
 
-    /// Whether a value is not good; one that is no number never is.
+    /// Whether a value is not good. NaN is never good.
     fn refuses(self, value: f64) -> bool {
         match self {
             Good::Below(bound) => value.is_nan() || value >= bound,
@@ -46,8 +46,8 @@ impl Good {
     }
 }
 
-/// A table of numbers, those that there are: what they are, their values, and which would be good. What is not good is marked by a
-/// sign, a colour and a word for those who see neither, and counted below the table.
+/// A table of the available numbers: description, value, criterion. Values that are not good are marked by a sign, a colour, and a
+/// word for readers who see neither, and are counted below the table.
 pub(crate) fn numbers<S: AsRef<str>>(rows: impl IntoIterator<Item = (S, Option<f64>, Good)>) -> Markup {
     let rows: Vec<(S, f64, Good)> =
         rows.into_iter().filter_map(|(what, value, good)| Some((what, value?, good))).collect();

@@ -1,4 +1,4 @@
-//! What the trust page and the page of a check have in common.
+//! Parts that the trust page and the page of `check` share.
 
 use std::cmp::Reverse;
 
@@ -11,7 +11,7 @@ use crate::cli::lines::{list, short};
 
 const STYLE: &str = include_str!("page_parts.css");
 
-/// A column of a table: its title and the class of its cells, `value` for numbers.
+/// A column of a table: its title and the class of its cells, which is `value` for numbers.
 pub(crate) type Column = (&'static str, &'static str);
 
 const DECISIONS: [Column; 4] = [("What", ""), ("Decided", ""), ("Why", ""), ("Flag", "")];
@@ -23,12 +23,12 @@ pub(crate) fn part(id: &str, title: &str, body: &Markup) -> Part {
     Part { id: id.to_owned(), title: title.to_owned(), body: html! { h2 { (title) } (body) } }
 }
 
-/// The page of this title, without invisible characters.
+/// The page with this title, without invisible characters.
 pub(crate) fn page(title: &str, name: &str, opening: Part, parts: Vec<Part>) -> String {
     plain(&Document { title, name, opening, parts, style: STYLE }.html()).into_owned()
 }
 
-/// The heading, the verdict in one of three sentences, its findings, the worst first, and a paragraph on the data.
+/// The heading, the verdict as one of three sentences, its findings with the worst first, and a paragraph on the data.
 pub(crate) fn opening(
     (id, title): (&str, &str),
     (verdict, [good, doubtful, wrong]): (Verdict, [&str; 3]),
@@ -52,7 +52,7 @@ pub(crate) fn opening(
     }
 }
 
-/// With a full stop, unless it ends in another mark.
+/// Adds a full stop unless the sentence ends in punctuation.
 fn ended(sentence: &str) -> String {
     if sentence.ends_with(['.', '?', '!']) { sentence.to_owned() } else { format!("{sentence}.") }
 }
@@ -66,7 +66,7 @@ fn found(finding: &Finding) -> Markup {
     html! { li { b { (label) ": " } (finding.what) ". " span .next { "Next: " (ended(&finding.next)) } } }
 }
 
-/// A table. In a narrow window each row becomes a block, in which cells name their columns.
+/// A table. In a narrow window each row becomes a block with the column's name in each cell.
 pub(crate) fn table(columns: &[Column], rows: &[Vec<Markup>]) -> Markup {
     html! {
         table .numbers {
@@ -91,13 +91,13 @@ pub(crate) fn decisions(decisions: &[Decision]) -> Markup {
     }
 }
 
-/// Constraints that were found: each in words, in how many stretches, for how long, and how sure.
+/// The estimated constraints: each in words, with its number of stretches, its duration and its certainty.
 pub(crate) fn constraints(rows: &[[String; 4]]) -> Markup {
     let row = |row: &[String; 4]| row.iter().map(|cell| html! { (cell) }).collect();
     table(&CONSTRAINTS, &rows.iter().map(row).collect::<Vec<_>>())
 }
 
-/// Names, units and ranges.
+/// Names, units and ranges of the channels.
 pub(crate) fn channels(state: &[StateChannel]) -> Markup {
     let row = |channel: &StateChannel| {
         let range = list([channel.low, channel.median, channel.high]);
@@ -107,7 +107,7 @@ pub(crate) fn channels(state: &[StateChannel]) -> Markup {
     table(&CHANNELS, &state.iter().map(row).collect::<Vec<_>>())
 }
 
-/// Episodes that are not learnt from.
+/// Episodes excluded from learning.
 pub(crate) fn left_out(episodes: &[LeftOut]) -> Markup {
     let listed: Vec<String> = episodes.iter().map(|left| format!("{} ({})", left.episode, left.why)).collect();
     html! { @if !listed.is_empty() { p { "Left out: " (listed.join(", ")) "." } } }

@@ -15,16 +15,16 @@ use crate::cli::pages::movements::evenly;
 use crate::cli::pages::page_parts::part;
 use crate::cli::pages::picture::{DEMONSTRATED, Picture, with_unit};
 
-/// Channels whose pairs are drawn, at most: those that vary most.
+/// Largest number of channels whose pairs are drawn: those that vary most.
 const MOST: usize = 7;
-/// Movements that are drawn, at most: evenly many of more.
+/// Largest number of movements in a picture, evenly selected.
 const DRAWN: usize = 24;
-/// Samples of a movement that are drawn in space, at most.
+/// Largest number of samples of a movement in the spatial picture.
 const IN_SPACE: usize = 40;
 const SIZE: (f64, f64) = (250.0, 255.0);
 const TITLE: &str = "All pairs of channels";
 
-/// Each channel above each other one; none of a state that one picture shows.
+/// A picture for each pair of channels; `None` if one picture shows the whole state.
 pub(crate) fn pairs(model: &Model, prepared: &Prepared) -> Option<Part> {
     if model.state.len() < 3 {
         return None;
@@ -56,7 +56,7 @@ pub(crate) fn pairs(model: &Model, prepared: &Prepared) -> Option<Part> {
     Some(part("pairs", TITLE, &body))
 }
 
-/// Movements of three channels, (3, N) each, in space.
+/// Movements of three channels, (3, N) each, in a spatial picture.
 fn in_space(model: &Model, movements: &[DMatrix<f64>]) -> Markup {
     let alike = model.state.iter().all(|channel| channel.scale == model.state[0].scale);
     let factors = model.scales().map(|scale| if alike { 1.0 } else { scale });
@@ -69,7 +69,7 @@ fn in_space(model: &Model, movements: &[DMatrix<f64>]) -> Markup {
     let starts = movements.iter().map(|movement| place(movement.column(0))).collect();
     let starts = Item::Dots { points: starts, color: DEMONSTRATED.color, radius: 2.6 };
     let end = |of: fn(&StateChannel) -> f64| Point3::from(Vector3::from_fn(|k, _| factors[k] * of(&model.state[k])));
-    // The larger pictures say where no unit was given; here is no room for it.
+    // The larger pictures mention missing units; there is no room for it here.
     let label = |k: usize| match &model.state[k] {
         StateChannel { unit: None, name, .. } if factors[k] == 1.0 => plain(name).into_owned(),
         StateChannel { unit: None, name, .. } => plain(&format!("{name} times {}", short(factors[k]))).into_owned(),
@@ -90,7 +90,7 @@ fn in_space(model: &Model, movements: &[DMatrix<f64>]) -> Markup {
     Card { id: "space", title, caption: "", remark: None, svg: &svg }.under(title)
 }
 
-/// The places of the channels that vary most in the units in which the policy was learnt, in their order.
+/// Indices of the channels that vary most in the units in which the policy was learnt, in their original order.
 fn most_varying(model: &Model) -> Vec<usize> {
     let mut all: Vec<usize> = (0..model.state.len()).collect();
     let width = |at: usize| (model.state[at].high - model.state[at].low) * model.state[at].scale;

@@ -1,4 +1,4 @@
-//! A policy in two of its dimensions: field, potential, demonstrations, and where it leads.
+//! A policy in two of its dimensions: field, potential, demonstrations, and roll-outs.
 
 use std::path::Path;
 
@@ -14,55 +14,56 @@ use crate::cli::lines::short;
 use crate::cli::pages::constraint_marks::{Held, marks};
 use crate::cli::pages::movements::movements;
 
-/// Grid points along each axis: for arrows, and for support; the potential is drawn from every other of these.
+/// Grid points along each axis, for arrows and for support; the potential uses every other point of the latter.
 const ARROWS: usize = 16;
 const FINER: usize = 97;
-/// The same of one picture of many.
+/// The same for one picture of many.
 const FEW_ARROWS: usize = 6;
 const COARSE: usize = 25;
-/// Demonstrations whose direction is marked, at most, and the same of one picture of many.
+/// Largest number of demonstrations with a direction mark, and the same for one picture of many.
 pub(crate) const MARKED: usize = 30;
 const FEW_MARKED: usize = 10;
-/// Empty space around the data, as a share of its range.
+/// Margin around the data, as a share of its range.
 const MARGIN: f64 = 0.12;
 pub(crate) const SIZE: (f64, f64) = (640.0, 660.0);
-/// How much neighbouring rectangles overlap, as a share of a cell: a line of paper shows between those that only touch.
+/// Overlap of neighbouring rectangles, as a share of a cell; without it a line of the background shows between them.
 const OVERLAP: f64 = 0.25;
 const UNKNOWN: &str = "#dcdcdc";
 pub(crate) const DEMONSTRATED: Stroke = Stroke { color: "#56a0d3", width: 1.3, dash: Dash::Solid };
 const FOLLOWED: Stroke = Stroke { color: "#d55e00", width: 2.4, dash: Dash::Solid };
 const ARROW: &str = "#6a6a6a";
 
-/// What is drawn.
+/// Contents of a picture.
 pub(crate) struct Picture<'a> {
-    /// Above it.
+    /// Title above the picture.
     pub(crate) title: String,
     pub(crate) model: &'a Model,
-    /// Channels across and up.
+    /// Horizontal and vertical channel.
     pub(crate) dims: [usize; 2],
     /// Demonstrations, (n, N) each.
     pub(crate) demonstrated: Vec<DMatrix<f64>>,
-    /// Constraints that acted on them.
+    /// Constraints on the demonstrations.
     pub(crate) held: Vec<Held>,
-    /// Movements that the policy makes.
+    /// Roll-outs of the policy.
     pub(crate) followed: Vec<DMatrix<f64>>,
 }
 
 impl Picture<'_> {
-    /// What each channel is drawn times: its scale, where the two differ, so that right angles are right angles.
+    /// Factors by which the channels are drawn: their scales if these differ, so that right angles appear as right
+    /// angles.
     fn factors(&self) -> [f64; 2] {
         let scales = self.dims.map(|dim| self.model.state[dim].scale);
         if scales[0] == scales[1] { [1.0; 2] } else { scales }
     }
 
-    /// From and to, as drawn.
+    /// Limits of an axis, as drawn.
     pub(crate) fn range(&self, axis: usize) -> [f64; 2] {
         let (channel, factor) = (&self.model.state[self.dims[axis]], self.factors()[axis]);
         let width = (channel.high - channel.low).max(f64::MIN_POSITIVE);
         [channel.low - MARGIN * width, channel.high + MARGIN * width].map(|value| value * factor)
     }
 
-    /// Values of the channels at a place.
+    /// Values of the channels at a point of the picture.
     fn values(&self, place: [f64; 2]) -> [f64; 2] {
         let factors = self.factors();
         [place[0] / factors[0], place[1] / factors[1]]
@@ -73,7 +74,7 @@ impl Picture<'_> {
         (0..count).map(|i| from + (to - from) * i as f64 / (count - 1) as f64).collect()
     }
 
-    /// Whether demonstrations support each of some places: it is in their range, and the policy is supported there.
+    /// Whether demonstrations support each of these points: it lies in their range, and the policy is supported there.
     fn are_known(&self, policy: &ModelPolicy<'_>, places: &[[f64; 2]]) -> Vec<bool> {
         let within = |(&dim, value): (&usize, f64)| {
             let channel = &self.model.state[dim];
@@ -90,12 +91,12 @@ impl Picture<'_> {
         known
     }
 
-    /// Which places of a grid are known, row after row.
+    /// Support of the points of a grid, row by row.
     pub(crate) fn known(&self, policy: &ModelPolicy<'_>, x: &[f64], y: &[f64]) -> Vec<Vec<bool>> {
         y.par_iter().map(|&y| self.are_known(policy, &x.iter().map(|&x| [x, y]).collect::<Vec<_>>())).collect()
     }
 
-    /// The state at a place; all other channels are at their median.
+    /// The state at a point; all other channels are at their median.
     pub(crate) fn state(&self, place: [f64; 2]) -> DVector<f64> {
         let mut state = DVector::from_iterator(self.model.state.len(), self.model.state.iter().map(|c| c.median));
         for (dim, value) in self.dims.into_iter().zip(self.values(place)) {
@@ -110,7 +111,7 @@ impl Picture<'_> {
         let (finer_x, finer_y) = (self.places(0, FINER), self.places(1, FINER));
         let finer = self.known(&policy, &finer_x, &finer_y);
         if let Some(potential) = policy.potential() {
-            // Every other place.
+            // Every other point.
             let [x, y] = [&finer_x, &finer_y].map(|places| places.iter().step_by(2).copied().collect::<Vec<f64>>());
             let known = finer.iter().step_by(2).map(|row| row.iter().step_by(2).copied().collect()).collect();
             let value = |x: f64, y: f64| potential.value(self.state([x, y]).as_view());
@@ -132,7 +133,7 @@ impl Picture<'_> {
         self.with_axes(layers, SIZE)
     }
 
-    /// Grey where nothing is known, movements and the policy, without words among them: one picture of many.
+    /// One picture of many: grey in unsupported regions, movements and the policy, without text.
     pub(crate) fn small_plane(&self, size: (f64, f64)) -> Plane {
         let (x, y) = (self.places(0, COARSE), self.places(1, COARSE));
         let policy = self.model.policy();
@@ -142,7 +143,7 @@ impl Picture<'_> {
         self.with_axes(layers, size)
     }
 
-    /// Axes with names and units around layers.
+    /// The layers with axes that show names and units.
     pub(crate) fn with_axes(&self, layers: Vec<Layer>, size: (f64, f64)) -> Plane {
         let label = |axis: usize| with_unit(&self.model.state[self.dims[axis]], self.factors()[axis]);
         let (x_label, y_label) = (label(0), label(1));
@@ -150,7 +151,7 @@ impl Picture<'_> {
         Plane { title, x_label, y_label, x: self.range(0), y: self.range(1), layers, size }
     }
 
-    /// The demonstrations.
+    /// Layers of the demonstrations.
     pub(crate) fn movements(&self, stroke: Stroke, label: Option<&str>, marked: usize) -> Vec<Layer> {
         let paths: Vec<_> = self.demonstrated.iter().map(|movement| self.points(movement)).collect();
         movements(&paths, [self.range(0), self.range(1)], stroke, label, marked)
@@ -161,7 +162,7 @@ impl Picture<'_> {
         movement.column_iter().map(|state| (x * state[self.dims[0]], y * state[self.dims[1]])).collect()
     }
 
-    /// The policy, where it is known.
+    /// Arrows of the policy in the supported region.
     fn arrows(&self, count: usize) -> Option<Layer> {
         let (policy, [x, y]) = (self.model.policy(), self.factors());
         let (xs, ys) = (self.places(0, count), self.places(1, count));
@@ -188,7 +189,7 @@ impl Picture<'_> {
     }
 }
 
-/// A channel, drawn times a factor, as an axis is labelled: XML does not allow every character.
+/// Axis label of a channel that is drawn times a factor; XML does not allow every character.
 pub(crate) fn with_unit(channel: &StateChannel, factor: f64) -> String {
     let times = if factor == 1.0 { String::new() } else { format!(" times {}", short(factor)) };
     let unit = channel.unit.as_deref().unwrap_or("no unit given");
@@ -198,7 +199,7 @@ pub(crate) fn with_unit(channel: &StateChannel, factor: f64) -> String {
     plain(&label).into_owned()
 }
 
-/// Grey over what nothing is known of.
+/// Grey rectangles over the unsupported region.
 pub(crate) fn unknown(x: &[f64], y: &[f64], known: &[Vec<bool>]) -> Vec<Layer> {
     let (left, right, low, high) = (x[0], x[x.len() - 1], y[0], y[y.len() - 1]);
     let more = [OVERLAP * (x[1] - x[0]), OVERLAP * (y[1] - y[0])];
@@ -211,7 +212,8 @@ pub(crate) fn unknown(x: &[f64], y: &[f64], known: &[Vec<bool>]) -> Vec<Layer> {
     rectangles(x, y, known).into_iter().map(region).collect()
 }
 
-/// Rectangles that cover once what nothing is known of, as few as rows of equal ends allow: from and to on either axis.
+/// Rectangles that cover the unsupported region without overlap, as few as possible by merging rows with equal ends:
+/// limits on either axis.
 fn rectangles(x: &[f64], y: &[f64], known: &[Vec<bool>]) -> Vec<[f64; 4]> {
     let half = [(x[1] - x[0]) / 2.0, (y[1] - y[0]) / 2.0];
     let (left, right, low, high) = (x[0], x[x.len() - 1], y[0], y[y.len() - 1]);
@@ -238,7 +240,7 @@ fn rectangles(x: &[f64], y: &[f64], known: &[Vec<bool>]) -> Vec<[f64; 4]> {
     areas.into_iter().map(rectangle).collect()
 }
 
-/// As SVG or PNG, by the extension.
+/// Draws as SVG or PNG, by the file's extension.
 pub(crate) fn draw(path: &Path, picture: &Picture<'_>, size: (f64, f64)) -> Result<Vec<u8>, Failure> {
     let plane = Plane { size, ..picture.plane() };
     let drawn = plot::Picture::rows(&[&[&plane]]);
@@ -259,7 +261,7 @@ mod tests {
         let known = [[false; 4], [false, true, true, false], [false, true, true, false], [false; 4]].map(Vec::from);
         let area = |[from, to, below, above]: &[f64; 4]| (to - from) * (above - below);
         let areas: Vec<f64> = rectangles(&grid, &grid, &known).iter().map(area).collect();
-        // Below, at either side, and above a square of 2 by 2 in one of 3 by 3.
+        // A square of 2 by 2 in one of 3 by 3 leaves areas below, at either side, and above.
         assert_eq!(areas, [1.5, 1.0, 1.0, 1.5]);
         assert!(unknown(&grid, &grid, &vec![vec![true; 4]; 4]).is_empty());
     }

@@ -18,7 +18,7 @@ use crate::cli::pages::picture::Picture;
 use crate::cli::trust_files::{DIGITS, NAMED};
 
 const FIELD: &str = "The learnt policy";
-/// Of its picture in half of the page, pixels.
+/// Size of the picture, which fills half of the page, in pixels.
 const SIZE: (f64, f64) = (540.0, 570.0);
 const SENTENCES: [&str; 3] = [
     "Good: all checks passed.",
@@ -26,7 +26,7 @@ const SENTENCES: [&str; 3] = [
     "Do not use: the policy is wrong, or cannot be checked.",
 ];
 
-/// The page of a model, with a picture of the demonstrations that it was learnt from, as they were prepared.
+/// The page of a model, with a picture of the prepared demonstrations from which it was learnt.
 pub(crate) fn trust_page(model: &Model, name: &str, checksum: &str, prepared: &Prepared) -> String {
     let title = format!("How far to trust {name}");
     let learnt = html! {
@@ -52,7 +52,7 @@ pub(crate) fn trust_page(model: &Model, name: &str, checksum: &str, prepared: &P
     page(&title, name, opening, parts)
 }
 
-/// How many rows were made of the samples, where they were thinned or averaged.
+/// The number of rows made from the samples, if they were thinned or averaged.
 fn rows(model: &Model) -> String {
     let rows = model.decisions.iter().find(|decision| decision.what == "rows");
     rows.map_or(String::new(), |rows| format!(" ({} rows: {})", rows.value, rows.why))
@@ -91,7 +91,7 @@ fn field(model: &Model, prepared: &Prepared, found: &[ConstraintStretch]) -> Mar
 fn numbers(model: &Model) -> Markup {
     let numbers = &model.trust.numbers;
     let worst = numbers.episode_errors.iter().map(|&(_, error)| error).max_by(f64::total_cmp);
-    // Beside PolicyAlign's policy stands that of a Gaussian process, of which some numbers are.
+    // For PolicyAlign, a Gaussian process is learnt as well; some numbers are of that process.
     let aligned = numbers.aligned.as_ref();
     let of =
         |what: &str, learner: &str| if aligned.is_some() { format!("{what} ({learner})") } else { what.to_owned() };

@@ -15,7 +15,7 @@ use crate::cli::pages::check_page::check_page;
 use crate::cli::recorded::{named, read_with_context, unreported};
 use crate::cli::session::{Output, Session, write};
 
-/// Episodes left out that are named.
+/// Number of left-out episodes that are named.
 const NAMED: usize = 4;
 
 /// Examine recordings before learning
@@ -94,12 +94,12 @@ impl Check {
     }
 }
 
-/// The same command with other flags of reading, where these are all that is wrong.
+/// The same command with other flags for reading, if those flags fix the only fault.
 fn reading_otherwise(findings: &[Finding]) -> Option<String> {
     let mut wrong = findings.iter().filter(|finding| finding.verdict == Verdict::DoNotUse);
     let (finding, None) = (wrong.next()?, wrong.next()) else { return None };
     let flags = Some(&finding.next[..]).filter(|next| next.starts_with("--"))?;
-    // A step that is given takes the place of stamps.
+    // A given time step replaces time stamps.
     let dropped = flags.split(' ').filter(|word| word.starts_with("--"));
     let dropped: Vec<&str> = dropped
         .flat_map(|flag| if flag == "--time" { vec![flag, "--dt"] } else { vec![flag] })
@@ -108,7 +108,7 @@ fn reading_otherwise(findings: &[Finding]) -> Option<String> {
     Some(format!("policy-align check {}", again("check", &dropped, flags)))
 }
 
-/// What was recorded.
+/// Describes the recordings.
 pub(crate) fn about(prepared: &Prepared, files: &str, lines: &mut Lines) {
     let demonstrations = &prepared.demonstrations;
     let names: Vec<&str> = prepared.state.iter().map(|channel| channel.name.as_str()).collect();
@@ -141,7 +141,7 @@ pub(crate) fn about(prepared: &Prepared, files: &str, lines: &mut Lines) {
     }
 }
 
-/// Episodes that were left out, the first with their reasons; none if there are none.
+/// Left-out episodes, the first ones with reasons; `None` without any.
 pub(crate) fn left_out(left_out: &[LeftOut]) -> Option<String> {
     let reasons = left_out.iter().take(NAMED).map(|one| format!("{}: {}", one.episode, one.why));
     let more = (left_out.len() > NAMED).then(|| format!("and {} more", left_out.len() - NAMED));
@@ -149,7 +149,7 @@ pub(crate) fn left_out(left_out: &[LeftOut]) -> Option<String> {
     (!left_out.is_empty()).then(|| format!("{} ({})", counted(left_out.len(), "episode"), reasons.join("; ")))
 }
 
-/// Every finding that casts doubt, the worst first, and remarks as far as there is room for them, in lines.
+/// Adds every finding that casts doubt, the worst first, and remarks while lines are left.
 pub(crate) fn findings(findings: &[Finding], room: usize, lines: &mut Lines) {
     let begun = lines.count();
     let mut findings: Vec<&Finding> = findings.iter().collect();

@@ -17,7 +17,7 @@ use crate::cli::recorded::{acted, known_episode, named, prepared_for};
 use crate::cli::session::{Output, Session, write};
 use crate::cli::trust_files::load;
 
-/// Stretches that are listed, at most.
+/// Largest number of listed stretches.
 const LISTED: usize = 10;
 
 /// Name the constraints that acted on recordings
@@ -81,7 +81,7 @@ impl Constraints {
         Ok(Output::done(lines.into_text()))
     }
 
-    /// Writes the constraints of the first episode, and says what they are good for.
+    /// Writes the constraints of the first episode and returns how the file can be used.
     fn write_first(&self, path: &Path, model: &Model, found: &[ConstraintStretch]) -> Result<String, Failure> {
         let first = found.first().map(|stretch| &stretch.episode);
         let own: Vec<&ConstraintStretch> = found.iter().filter(|stretch| Some(&stretch.episode) == first).collect();
@@ -118,7 +118,7 @@ impl Constraints {
     }
 }
 
-/// How many stretches of each kind there are, and the first ones.
+/// The number of stretches of each kind, and the first ones.
 fn told(model: &Model, found: &[ConstraintStretch]) -> Lines {
     let mut lines = Lines::default();
     let count = |acting| found.iter().filter(|stretch| stretch.acting == acting).count();
@@ -141,7 +141,7 @@ fn told(model: &Model, found: &[ConstraintStretch]) -> Lines {
     lines
 }
 
-/// A stretch in words, and how sure it is.
+/// A stretch in words with its certainty.
 fn line(stretch: &ConstraintStretch, state: &[StateChannel]) -> String {
     let words = stretch.in_words(state);
     let sure = if stretch.acting == Acting::Constraint { stretch.angle_in_words() } else { String::new() };

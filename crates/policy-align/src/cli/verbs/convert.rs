@@ -50,7 +50,7 @@ impl Convert {
                 Failure::of_text(Exit::Usage, &error.to_string(), format!("--resample {rate}"), "another rate")
             })?;
         }
-        // Which channels are context stands in no file; all else is written as it was read.
+        // Files do not record which channels are context; all else is written as it was read.
         let context = match context {
             ContextUse::Named(names) => names,
             _ => reading.context,

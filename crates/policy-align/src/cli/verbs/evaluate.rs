@@ -17,7 +17,7 @@ use crate::cli::recorded::{named, prepared_for, read, summaries};
 use crate::cli::session::{Output, Session};
 use crate::cli::trust_files::load;
 
-/// Constraints that are listed, at most.
+/// Largest number of listed constraints.
 const LISTED: usize = 5;
 
 /// Evaluate a model on other recordings
@@ -124,7 +124,7 @@ impl Evaluate {
         })
     }
 
-    /// The columns of the true policy, read as if they were the state.
+    /// Reads the columns of the true policy as if they were the state.
     fn truth(
         &self,
         session: &Session,
@@ -158,7 +158,7 @@ impl Evaluate {
     }
 }
 
-/// The files that a model was learnt from.
+/// The files among these from which the model was learnt.
 fn training(model: &Model, files: &[PathBuf]) -> Result<Vec<String>, Failure> {
     let learnt = |file: &FileSummary| model.data.files.iter().any(|known| known.sha256 == file.sha256);
     Ok(summaries(files)?.into_iter().filter(learnt).map(|file| file.name).collect())
@@ -216,7 +216,7 @@ fn tell_how_many_more(all: usize, lines: &mut Lines) {
     }
 }
 
-/// Median error of the episodes of each constraint, where the file names them.
+/// Median error of the episodes of each constraint, if the file labels constraints.
 fn by_constraint(prepared: &Prepared, judged: &Evaluation) -> BTreeMap<String, f64> {
     let mut errors: BTreeMap<String, Vec<f64>> = BTreeMap::new();
     for (label, error) in prepared.constraints.iter().zip(&judged.episodes) {

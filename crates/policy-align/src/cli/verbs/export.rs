@@ -18,9 +18,9 @@ use crate::cli::trust_files::load;
 use crate::cli::verbs::rollout::{followed, write_paths};
 use crate::cli::written::RobotFlag;
 
-/// Roll-outs that are exported unless starts are given.
+/// Number of exported roll-outs unless starts are given.
 const STARTS: usize = 12;
-/// What loads the file that is named after it.
+/// Commands that load the file named after them.
 const LOAD_ONNX: &str = "python -c \"import onnxruntime as o, sys; o.InferenceSession(sys.argv[1])\"";
 const LOAD_LEROBOT: &str =
     "python -c \"import lerobot_policy_align as l, sys; l.AlignPolicy.from_pretrained(sys.argv[1])\"";

@@ -26,9 +26,9 @@ use crate::cli::session::{Output, Session, write_together};
 use crate::cli::trust_files::{MEMBER, trust_files, warn_of_others};
 use crate::cli::verbs::check::{findings, left_out};
 
-/// The flag of what a robot decides.
+/// The flag for decisions that depend on a robot.
 const ROBOT: &str = "--robot";
-/// Where the model goes, unless a name is given.
+/// Default name of the model's file.
 const MODEL: &str = "model.json";
 
 /// Learn a policy and report how far to trust it
@@ -131,7 +131,7 @@ impl Fit {
         self.output.clone().unwrap_or_else(|| PathBuf::from(MODEL))
     }
 
-    /// The page and its numbers.
+    /// The page and its numbers, each with its path.
     fn report(&self, model: &Model, prepared: &Prepared, checksum: &str) -> [(PathBuf, String); 2] {
         let [page, numbers] = trust_files(&self.output());
         let html = trust_page(model, &base_name(&self.output()), checksum, prepared);
@@ -205,7 +205,7 @@ impl Fit {
     }
 }
 
-/// Episodes to learn from, and those held out.
+/// Splits the episodes into those for learning and those held out.
 fn divided(recordings: Recordings, names: &[String], place: &str) -> Result<(Recordings, Option<Recordings>), Failure> {
     if names.is_empty() {
         return Ok((recordings, None));
@@ -226,7 +226,7 @@ fn divided(recordings: Recordings, names: &[String], place: &str) -> Result<(Rec
     Ok((of(others, findings), Some(of(held, vec![]))))
 }
 
-/// A share of the episodes, at least one and not all, evenly spread over them.
+/// The names of a share of the episodes, at least one and not all, evenly spaced.
 fn spread(share: &str, known: &[String]) -> Result<Vec<String>, Failure> {
     let percent: Option<f64> = share.trim_end_matches('%').trim().parse().ok();
     let Some(percent) = percent.filter(|percent| *percent > 0.0 && *percent < 100.0 && known.len() > 1) else {
@@ -237,7 +237,7 @@ fn spread(share: &str, known: &[String]) -> Result<Vec<String>, Failure> {
     Ok((0..count).map(|at| known[(2 * at + 1) * known.len() / (2 * count)].clone()).collect())
 }
 
-/// Leaves out copies of what is held out: they would make the error on it too small.
+/// Removes copies of held-out episodes, which would make the held-out error too small.
 fn without_copies(others: &mut Vec<Episode>, held: &[Episode]) -> Option<Finding> {
     let firsts = duplicates(held.iter().chain(&*others).map(|episode| &episode.positions));
     let mut of_held = firsts[held.len()..].iter().map(|first| first.is_some_and(|first| first < held.len()));
@@ -257,7 +257,7 @@ fn without_copies(others: &mut Vec<Episode>, held: &[Episode]) -> Option<Finding
 }
 
 fn judged(held_out: &Recordings, options: &PrepareOptions, model: &Model) -> Result<Evaluation, Failure> {
-    // In the units of the model, which may have learnt them.
+    // In the units of the model, which it may have learnt.
     let options = PrepareOptions { scale: model.scale(), context: model.context_use(), ..options.clone() };
     let prepared = prepare(held_out, &options).map_err(|error| Failure::prepare(&error, "--hold-out".to_owned()))?;
     evaluate(model, &prepared, None)

@@ -1,4 +1,4 @@
-//! What is made of the flags themselves.
+//! Output generated from the flags' definitions: shell completions and manual pages.
 
 use std::path::PathBuf;
 

@@ -22,10 +22,10 @@ use crate::cli::session::{Output, Session, write};
 use crate::cli::trust_files::load;
 use crate::cli::verbs::rollout::followed;
 
-/// Starts that are tried for the next command, at most, beside those given.
+/// Largest number of starts tried for the suggested command, in addition to those given.
 const STARTS: usize = 8;
 
-/// Pixels around a plot, of both sides together.
+/// Width of the frame around a plot in pixels, both sides together.
 const FRAME: f64 = 20.0;
 
 /// Plot a policy, its potential and recordings
@@ -84,7 +84,7 @@ impl Plot {
         reading.context.clear();
         let reading = reading.with_channels_of(&model);
         let (demonstrated, held) = if self.constraints {
-            // There it chooses a context, here it names channels.
+            // `--context` fixes a context there; here it names channels.
             let mut reading = self.read.clone();
             reading.context.clear();
             let (_, prepared) = prepared_for(session, &model, &self.files, (&reading, &PrepareFlags::default()))?;
@@ -115,7 +115,7 @@ impl Plot {
         Ok(Output::done(lines.next(&self.next(session, &model, &flags))))
     }
 
-    /// A roll-out as this one, from a start that works.
+    /// A command for a roll-out with the same flags, from a start that succeeds.
     fn next(&self, session: &Session, model: &Model, flags: &RollOutFlags) -> String {
         let middle = model.state.iter().map(|channel| short(channel.high * 0.5 + channel.median * 0.5));
         let middle = middle.collect::<Vec<_>>().join(",");
@@ -138,7 +138,7 @@ impl Plot {
     }
 }
 
-/// Of `800x600`, each from 200 to 10,000, what is left within the frame.
+/// Parses `800x600`, each side from 200 to 10,000, and subtracts the frame.
 fn size(text: &str) -> Result<(f64, f64), String> {
     let length = |text: &str| text.trim().parse().ok().filter(|length| (200..=10_000).contains(length)).map(f64::from);
     let sides =

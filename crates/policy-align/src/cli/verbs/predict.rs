@@ -61,18 +61,18 @@ enum Outside {
 /// The prediction of a model at a state.
 struct Prediction {
     action: DVector<f64>,
-    /// None outside the data, and of policies without one; so the deviation.
+    /// `None` outside the data and for policies without a potential; likewise the deviation.
     potential: Option<f64>,
     deviation: Option<DVector<f64>>,
     support: f64,
     supported: bool,
 }
 
-/// States predicted together.
+/// Number of states predicted together.
 const TOGETHER: usize = 64;
 
 impl Prediction {
-    /// Of some states (n, N).
+    /// Predictions for states (n, N).
     fn of(policy: &ModelPolicy<'_>, states: DMatrixView<'_, f64>) -> Vec<Self> {
         let (actions, Certainty { support, deviations }) = (policy.actions(states), policy.certainty(states));
         let one = |(at, support): (usize, f64)| {

@@ -129,7 +129,7 @@ impl RollOut {
     }
 }
 
-/// Rolls out a policy with the options of flags.
+/// Rolls out a policy with the options that the flags set.
 pub(crate) fn followed(flags: &RollOutFlags, model: &Model, start: &DVector<f64>, from: &str) -> Result<Path, Failure> {
     flags.roll_out(model)?.follow(model, start).map_err(|error| {
         let exit = match error {
@@ -160,7 +160,7 @@ fn stop(stop: &Stop) -> String {
     }
 }
 
-/// Writes paths as a recording, an episode each; which joints of the robot, if there is one, the channels are.
+/// Writes paths as a recording, one episode each. With a robot, returns which joints the channels are.
 pub(crate) fn write_paths(
     output: &path::Path,
     model: &Model,

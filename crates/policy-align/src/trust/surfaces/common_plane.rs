@@ -1,4 +1,4 @@
-//! A plane that no movement leaves: found from positions alone, without a policy.
+//! A plane that contains all movements, found from positions alone, without a policy.
 
 use motion::{Demonstrations, upper_median};
 use nalgebra::{DMatrix, DVector};
@@ -7,17 +7,17 @@ use prepare::numbers::short;
 use super::{as_recorded, equation, parts};
 use crate::{Finding, StateChannel, Verdict};
 
-/// Thickness over the next extent, at most.
+/// Largest ratio of the thickness to the next larger extent.
 const FLAT: f64 = 0.03;
 
 /// The plane, in the units of the recording.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct CommonPlane {
-    /// Of unit length, its largest entry positive, (n).
+    /// Normal of unit length with a positive largest entry, (n).
     pub(crate) normal: DVector<f64>,
-    /// Median over the movements of what each keeps.
+    /// Median over the movements of the coordinate along the normal.
     pub(crate) level: f64,
-    /// Largest difference from it.
+    /// Largest deviation of a movement from this level.
     pub(crate) apart: f64,
     /// Standard deviation of the normal's angle, radians.
     pub(crate) angle: f64,
@@ -26,8 +26,8 @@ pub(crate) struct CommonPlane {
 }
 
 impl CommonPlane {
-    /// (S30): the least eigenvector of the scatter of positions about the mean of their movement, if positions hardly vary along
-    /// it and vary in all other directions.
+    /// (S30): the normal is the eigenvector with the least eigenvalue of the scatter of positions about their movements' means.
+    /// `None` unless positions hardly vary along it and vary in all other directions.
     pub(crate) fn of(demonstrations: &Demonstrations, state: &[StateChannel]) -> Option<CommonPlane> {
         let movements = demonstrations.trajectories();
         let dim = demonstrations.dim();
@@ -58,7 +58,7 @@ impl CommonPlane {
         Some(CommonPlane { normal, level, apart, angle: tilt.sqrt(), thickness: thin / length.abs() })
     }
 
-    /// A remark with the plane, or the planes, in words.
+    /// A remark that describes the plane or planes.
     pub(crate) fn finding(&self, state: &[StateChannel]) -> Finding {
         let plane = parts(&self.normal, state);
         let angle = short(self.angle.to_degrees());
@@ -94,7 +94,7 @@ mod tests {
         ["x", "y", "z"].map(channel).to_vec()
     }
 
-    /// Circles by hand in the plane of this normal and level, with noise of positions.
+    /// Circles by hand in the plane with this normal and level, with noise of positions.
     fn circled(normal: &DVector<f64>, level: f64, noise: f64, rng: &mut ChaCha8Rng) -> Demonstrations {
         let others = DMatrix::from_fn(3, 2, |_, _| rng.random_range(-1.0..1.0f64));
         let basis = DMatrix::from_columns(&[normal.clone(), others.column(0).into(), others.column(1).into()]).qr().q();
@@ -117,7 +117,7 @@ mod tests {
     }
 
     proptest! {
-        /// A plane circled by hand is found to a degree, and its level.
+        /// The plane of circles by hand is found to within a degree, with its level.
         #[test]
         fn a_circled_plane_is_named(seed in any::<u64>(), level in -0.5f64..0.5) {
             let mut rng = ChaCha8Rng::seed_from_u64(seed);
@@ -131,7 +131,7 @@ mod tests {
             prop_assert!(plane.finding(&channels()).what.starts_with("all movements stay at"));
         }
 
-        /// Movements in all directions, or along a line, have none.
+        /// Movements in all directions, or along a line, have no common plane.
         #[test]
         fn other_movements_have_no_plane(seed in any::<u64>(), line in any::<bool>()) {
             let mut rng = ChaCha8Rng::seed_from_u64(seed);

@@ -1,4 +1,4 @@
-//! Curved surfaces that no movement crosses: found from states and directions alone, without a policy.
+//! Curved surfaces that no movement crosses, found from states and directions alone, without a policy.
 
 use gp::{Hypothesis, Rows};
 use nalgebra::{DVector, DVectorView, SymmetricEigen};
@@ -9,24 +9,24 @@ use super::quadratics::{Quadratic, Quadratics};
 use crate::trust::TrustNumbers;
 use crate::{Finding, StateChannel, Verdict};
 
-/// Dimensions at most: in twelve the functions that are tried have 90 coefficients.
+/// Largest dimension: in twelve dimensions the candidate functions have 90 coefficients.
 const DIMENSIONS: usize = 12;
-/// Coverage below which a surface is doubtful if movements seem unconstrained.
+/// Coverage below which a surface is doubtful even if movements seem unconstrained.
 const FREE: f64 = 0.01;
-/// Share of the largest curvature by which others may differ from it, or from 0, to be one with it.
+/// Curvatures that differ from the largest, or from 0, by at most this share of the largest count as equal to it.
 const ALIKE: f64 = 0.1;
-/// Standard deviation of radii, as a share, up to which all movements stay on one sphere.
+/// Largest relative standard deviation of radii with which all movements stay on one sphere.
 const THIN: f64 = 0.03;
 
-/// A finding if no movement crosses the level sets of a function (S46); none where movements hardly vary along a direction, which is
-/// [`TrustNumbers::direction_coverage`].
+/// A finding if no movement crosses the level sets of a function (S46). `None` if movements hardly vary along a direction, which
+/// [`TrustNumbers::direction_coverage`] shows.
 pub(crate) fn common_surface(rows: &Rows, state: &[StateChannel], numbers: &TrustNumbers) -> Option<Finding> {
     let is_flat = numbers.direction_coverage < TrustNumbers::GOOD_COVERAGE;
     if is_flat || state.len() < 2 || state.len() > DIMENSIONS {
         return None;
     }
     let quadratics = Quadratics::of(rows, state.len())?;
-    // Without constraints, movements that run into a cycle leave it seldom.
+    // Movements that converge to a cycle without constraints rarely leave it.
     let least = if numbers.reading == Hypothesis::Free { FREE } else { TrustNumbers::GOOD_COVERAGE };
     let coverage = quadratics.coverage().filter(|&coverage| coverage < least)?;
     let surface = surface(&quadratics, rows, state)?;
@@ -37,7 +37,7 @@ pub(crate) fn common_surface(rows: &Rows, state: &[StateChannel], numbers: &Trus
     })
 }
 
-/// In words, what the level sets of the function are that all movements cross least.
+/// Describes the level sets of the function that all movements together cross least.
 fn surface(quadratics: &Quadratics, rows: &Rows, state: &[StateChannel]) -> Option<String> {
     let n = state.len();
     let Quadratic { slope, curvature } = quadratics.least_crossed()?;
@@ -56,7 +56,7 @@ fn surface(quadratics: &Quadratics, rows: &Rows, state: &[StateChannel]) -> Opti
     if curved.len() < 2 || straight.len() > 1 || curved.len() + straight.len() < n {
         return general;
     }
-    // Where the gradient vanishes within the curved directions; along an axis nearest to the mean.
+    // The point where the gradient vanishes within the curved directions; along an axis, the point nearest to the mean.
     let mut centre = DVector::zeros(n);
     for &k in &curved {
         let axis = eigenvectors.column(k);
@@ -70,7 +70,7 @@ fn surface(quadratics: &Quadratics, rows: &Rows, state: &[StateChannel]) -> Opti
     let distances: Vec<f64> = rows.states().column_iter().map(|x| distance(x.rows(0, n))).collect();
     let radius = distances.iter().sum::<f64>() / distances.len() as f64;
     let variance = distances.iter().map(|own| (own - radius).powi(2)).sum::<f64>() / distances.len() as f64;
-    // What is nothing beside the radius is rounding.
+    // Coordinates negligible compared with the radius are rounding errors.
     let coordinate = |x: f64| short(if x.abs() > 1e-3 * radius { x / scale } else { 0.0 });
     let place: Vec<String> =
         state.iter().zip(&centre).map(|(channel, &x)| format!("{} {}", channel.name, coordinate(x))).collect();
@@ -100,7 +100,7 @@ mod tests {
     use super::super::quadratics::PARTS;
     use super::*;
 
-    /// What movements do not leave.
+    /// The surface that contains all movements.
     #[derive(Debug, Clone, Copy)]
     enum Common {
         Nothing,
@@ -118,7 +118,7 @@ mod tests {
         DVector::from_fn(n, |_, _| rng.random_range(-1.0..1.0f64))
     }
 
-    /// Movements of π(x) = goal − x on a surface about `centre`, each also under a constraint of its own, with noise of the velocities.
+    /// Movements of π(x) = goal − x on a surface about `centre`, each also under a separate constraint, with noise of the velocities.
     fn movements(common: Common, centre: &DVector<f64>, (count, noise): (usize, f64), rng: &mut ChaCha8Rng) -> Rows {
         let n = centre.len();
         let goal = any_vector(n, rng);
@@ -165,7 +165,7 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(32))]
 
-        /// A sphere and a cylinder that all movements stay on are found, with their centre and radius in the units of the recording.
+        /// A sphere and a cylinder that contain all movements are found, with their centre and radius in the units of the recording.
         #[test]
         fn a_common_surface_is_named(
             seed in any::<u64>(), round in any::<bool>(), n in 3..5usize, scale in 0.01..100.0f64, noise in 0.0..0.05f64,
@@ -182,11 +182,11 @@ mod tests {
                 text.trim_start().split([' ', ',']).next().unwrap().parse::<f64>().unwrap() * scale
             };
             prop_assert!((after(" radius ") - 1.0).abs() < 0.1, "{said}");
-            // Along the axis of a cylinder no place is its centre.
+            // Along a cylinder's axis, the centre is not determined.
             prop_assert!((after(" y ") - centre[1]).abs() < 0.1, "{said}, {centre}");
         }
 
-        /// Movements each under a constraint that is not that of others cross all surfaces; few movements find none.
+        /// Movements under different constraints cross all surfaces; with few movements no surface is found.
         #[test]
         fn other_movements_cross_all_surfaces(seed in any::<u64>(), n in 2..5usize, count in 1..40usize, noise in 0.0..0.2f64) {
             let mut rng = ChaCha8Rng::seed_from_u64(seed);

@@ -1,4 +1,4 @@
-//! Surfaces that no movement crosses, found without a policy: one common to all movements may hide what the policy does there.
+//! Surfaces that no movement crosses, found without a policy. A constraint common to all movements may hide the policy across them.
 
 mod common_plane;
 mod common_surface;
@@ -16,26 +16,26 @@ use prepare::sum_of_parts;
 
 use crate::StateChannel;
 
-/// At most so many rows, evenly spread over all.
+/// At most `most` rows, evenly spread over all.
 fn some_of(rows: &Rows, most: usize) -> Vec<usize> {
     (0..rows.len()).step_by(rows.len().div_ceil(most).max(1)).collect()
 }
 
-/// The unit normal n of nᵀx in the units of the recording, its largest entry positive, for one of nᵀSx, where Sx was learnt from; and
-/// what nᵀSx is divided by.
+/// Converts the normal of nᵀSx, where Sx is the learner's state, to the unit normal of nᵀx in the units of the recording, with a
+/// positive largest entry. Also returns the divisor of nᵀSx.
 fn as_recorded(normal: &DVector<f64>, state: &[StateChannel]) -> (DVector<f64>, f64) {
     let normal = DVector::from_fn(state.len(), |k, _| normal[k] * state[k].scale);
     let length = normal.norm() * if normal[normal.iamax()] < 0.0 { -1.0 } else { 1.0 };
     (normal / length, length)
 }
 
-/// A unit normal in words: 0.36 x + 0.86 y.
+/// A unit normal as text: 0.36 x + 0.86 y.
 fn parts(normal: &DVector<f64>, state: &[StateChannel]) -> String {
     let names: Vec<&str> = state.iter().map(|channel| channel.name.as_str()).collect();
     sum_of_parts(normal.as_slice(), &names, 3)
 }
 
-/// A plane in words, in the units of the recording: 0.36 x + 0.86 y = 1.2 m.
+/// A plane as text, in the units of the recording: 0.36 x + 0.86 y = 1.2 m.
 fn equation(normal: &DVector<f64>, level: f64, state: &[StateChannel]) -> String {
     let unit = match state.first().and_then(|channel| channel.unit.as_deref()) {
         Some(unit) if state.iter().all(|channel| channel.unit.as_deref() == Some(unit)) => format!(" {unit}"),

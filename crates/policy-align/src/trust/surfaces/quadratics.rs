@@ -1,4 +1,4 @@
-//! Functions of degree 2, and how movements cross their level sets: (S46).
+//! Quadratic functions, and how movements cross their level sets: (S46).
 
 use gp::Rows;
 use motion::upper_median;
@@ -6,16 +6,16 @@ use nalgebra::{Cholesky, DMatrix, DVector, DVectorView};
 
 use super::some_of;
 
-/// Rows at most.
+/// Largest number of rows.
 const ROWS: usize = 3000;
-/// Movements are left out in so many parts.
+/// Number of parts for cross-validation over movements.
 pub(super) const PARTS: usize = 5;
 
-/// Functions s(z) = bᵀz + ½ zᵀCz of states z = (x − mean)/spread, and how movements cross their level sets.
+/// Functions s(z) = bᵀz + ½ zᵀCz of states z = (x − mean)/spread, with statistics of how movements cross their level sets.
 pub(super) struct Quadratics {
     pub(super) mean: DVector<f64>,
     pub(super) spread: f64,
-    /// Of each movement, Σ w(∇s·û)² and Σ w|∇s|²/n as quadratic forms of the coefficients.
+    /// For each movement, Σ w(∇s·û)² and Σ w|∇s|²/n as quadratic forms of the coefficients.
     movements: Vec<[DMatrix<f64>; 2]>,
 }
 
@@ -28,7 +28,7 @@ pub(super) struct Quadratic {
 }
 
 impl Quadratics {
-    /// Of the rows that move; none if none does.
+    /// Statistics of the moving rows; `None` without any.
     pub(super) fn of(rows: &Rows, n: usize) -> Option<Quadratics> {
         let chosen = some_of(rows, ROWS);
         let states = rows.states().rows(0, n).select_columns(&chosen);
@@ -44,7 +44,7 @@ impl Quadratics {
         for (row, x) in chosen.iter().zip(states.column_iter()) {
             let velocity = rows.velocities().column(*row);
             let Some(direction) = velocity.try_normalize(0.0) else { continue };
-            // Noise turns slow velocities.
+            // Noise changes the directions of slow velocities.
             let weight = (velocity.norm() / usual).min(1.0).powi(2);
             let gradients = gradients(((x - &mean) / spread).as_view());
             let [across, all] = &mut movements[rows.indices()[*row].trajectory];
@@ -58,8 +58,8 @@ impl Quadratics {
         Some(Quadratics { mean, spread, movements })
     }
 
-    /// (S46): Σ w(∇s·û)²/(Σ w|∇s|²/n) of movements left out, for the function that the others cross least: 1 if they go in all directions
-    /// alike. None with fewer movements than parts.
+    /// (S46): Σ w(∇s·û)²/(Σ w|∇s|²/n) of left-out movements, for the function that the others cross least; 1 if they go in all directions
+    /// equally. `None` with fewer movements than parts.
     pub(super) fn coverage(&self) -> Option<f64> {
         if self.movements.len() < PARTS {
             return None;
@@ -77,7 +77,7 @@ impl Quadratics {
         Some(across / all)
     }
 
-    /// The function that all movements cross least.
+    /// The function that all movements together cross least.
     pub(super) fn least_crossed(&self) -> Option<Quadratic> {
         let (n, function) = (self.mean.len(), least_crossed(self.movements.iter())?);
         let mut curvature = DMatrix::zeros(n, n);
@@ -90,12 +90,12 @@ impl Quadratics {
     }
 }
 
-/// i ≤ j, the products of coordinates in their order.
+/// Index pairs i ≤ j of the products of coordinates, in order.
 fn pairs(n: usize) -> impl Iterator<Item = (usize, usize)> {
     (0..n).flat_map(move |i| (i..n).map(move |j| (i, j)))
 }
 
-/// Gradients of z_i, then of z_i z_j, i ≤ j, at a state z (n): a row each, (n + n(n+1)/2, n).
+/// Gradients of z_i, then of z_i z_j, i ≤ j, at a state z (n): one per row, (n + n(n+1)/2, n).
 fn gradients(z: DVectorView<'_, f64>) -> DMatrix<f64> {
     let n = z.len();
     let mut gradients = DMatrix::zeros(n + n * (n + 1) / 2, n);
@@ -118,7 +118,7 @@ fn least_crossed<'a>(movements: impl Iterator<Item = &'a [DMatrix<f64>; 2]>) -> 
     let lower = factor.l();
     let left = lower.solve_lower_triangular(&across)?;
     let whitened = lower.solve_lower_triangular(&left.transpose())?;
-    // Velocities that overflow when squared: eigenvalues of what is not finite would be searched for ever.
+    // Velocities may overflow when squared, and the eigenvalue search does not end on non-finite values.
     if whitened.iter().any(|entry| !entry.is_finite()) {
         return None;
     }
@@ -133,7 +133,7 @@ mod tests {
 
     use super::*;
 
-    /// ∇s by differences, and the coverage of a function by its literal sums.
+    /// Compares ∇s with finite differences, and the coverage of a function with its definition.
     #[test]
     fn gradients_are_those_of_the_function() {
         let mut rng = ChaCha8Rng::seed_from_u64(1);

@@ -1,4 +1,4 @@
-//! A plane that many movements run into and none crosses: a table, a fence or a joint's stop.
+//! A plane that many movements reach and none crosses: a table, a fence or a joint's stop.
 
 use std::collections::HashSet;
 
@@ -10,56 +10,56 @@ use prepare::numbers::percent;
 use super::{as_recorded, equation, some_of};
 use crate::{Finding, Prepared, VelocitySource, Verdict};
 
-/// Dimensions at most: planes through so many states are tried, all of which have to lie on the wall.
+/// Largest dimension n: trial planes pass through n states, all of which must lie on the wall.
 const DIMENSIONS: usize = 4;
-/// States looked at, at most.
+/// Largest number of states.
 const STATES: usize = 2000;
-/// Planes that are tried.
+/// Number of trial planes.
 const PLANES: usize = 400;
-/// Times that each is fitted anew to the states near it.
+/// Number of times that each is refitted to the states near it.
 const FITS: usize = 6;
-/// States nearer than so many standard deviations lie on the plane.
+/// States within this many standard deviations lie on the plane.
 const NEAR: f64 = 2.5;
-/// And further than so many they are beyond it; no more than one in a hundred may be.
+/// States farther than this many standard deviations are beyond it, at most one in a hundred.
 const BEYOND: f64 = 3.5;
-/// Standard deviation of the states on a wall, as a share of the way to the farthest, at most.
+/// Largest standard deviation of the states on a wall, relative to the largest distance of a state.
 const THIN: f64 = 0.03;
-/// Share of the states on a wall, at least; and so many times their standard deviation as a share of the way to the farthest.
+/// Least share of the states on a wall, and the least ratio of this share to their standard deviation relative to the largest distance.
 const SHARE: f64 = 0.2;
 const DENSE: f64 = 20.0;
-/// Share of the states above which one plane has all: see [`CommonPlane`](super::CommonPlane).
+/// If the share exceeds this, all states lie in one plane: see [`CommonPlane`](super::CommonPlane).
 const ALL: f64 = 0.95;
-/// Share of the movements that reach it, at least.
+/// Least share of the movements that reach the wall.
 const MOVEMENTS: f64 = 0.5;
-/// Least extent along a wall, as a share of the largest of all states: less is a goal.
+/// Least extent along a wall, as a share of the largest extent of all states; a smaller one is a goal.
 const WIDE: f64 = 0.2;
-/// Standard deviation of the states on a wall, at most: times the noise of positions, as recorded or smoothed, and as a share of the way
-/// to the farthest. Movements that come together on a straight path are less exact.
+/// Largest standard deviation of the states on a wall: factors of the noise of positions, as recorded or smoothed, plus a share of the
+/// largest distance. Movements that converge to a straight path are less exact.
 const NOISE: f64 = 1.3;
 const SMOOTHED_NOISE: f64 = 0.6;
 const EXACT: f64 = 0.001;
-/// Share by which the policy differs from one without constraints, from which it has not taken the wall for its own doing.
+/// Share by which the policy differs from one without constraints; above it, the policy was not misled by the wall.
 const DIFFERS: f64 = 0.25;
 
-/// A plane fitted to the states near it, in the units that were learnt from.
+/// A plane fitted to the states near it, in the learner's units.
 struct Wall {
-    /// Of unit length, pointing out, (n).
+    /// Normal of unit length, pointing outwards, (n).
     normal: DVector<f64>,
-    /// A place on it, (n).
+    /// A point on the plane, (n).
     at: DVector<f64>,
     /// Standard deviation of the states on it.
     thickness: f64,
-    /// The largest distance of all states.
+    /// The largest distance of a state.
     farthest: f64,
-    /// Which states lie on it, and their share.
+    /// Indices of the states on the plane, and their share.
     on: Vec<usize>,
     share: f64,
-    /// Least standard deviation along it.
+    /// Least standard deviation along the plane.
     width: f64,
 }
 
-/// A finding if movements run into a plane that none crosses (S47), and the policy differs by so small a `gap` from one without
-/// constraints: what stops them there may hide where the policy goes.
+/// A finding if movements reach a plane that none crosses (S47), and the policy differs little, by `gap`, from one without constraints.
+/// An obstacle there may hide where the policy goes.
 pub(crate) fn wall(rows: &Rows, prepared: &Prepared, gap: f64) -> Option<Finding> {
     let Prepared { state, noise, .. } = prepared;
     if state.len() < 2 || state.len() > DIMENSIONS || gap >= DIFFERS {
@@ -85,7 +85,7 @@ pub(crate) fn wall(rows: &Rows, prepared: &Prepared, gap: f64) -> Option<Finding
 }
 
 impl Wall {
-    /// (S47), of at most [`STATES`] rows; planes through states that are spread evenly over all, without chance.
+    /// (S47), from at most [`STATES`] rows. The trial planes pass through deterministic, evenly spread states.
     fn of(rows: &Rows, n: usize) -> Option<Wall> {
         let chosen = some_of(rows, STATES);
         let states = rows.states().rows(0, n).select_columns(&chosen);
@@ -100,7 +100,7 @@ impl Wall {
         planes.filter(is_reached).max_by(|a, b| a.density().total_cmp(&b.density()))
     }
 
-    /// The plane through these states, fitted anew to the states near it, if it is like a wall.
+    /// The plane through these states, refitted to the states near it, if it resembles a wall.
     fn through(states: &DMatrix<f64>, through: &[usize]) -> Option<Wall> {
         let n = states.nrows();
         let few = states.select_columns(through);
@@ -120,7 +120,7 @@ impl Wall {
             width = spreads[1];
             heights = self::heights(states, &at, &normal);
             let median = upper_median(near.iter().map(|&k| heights[k].abs()).collect())?;
-            // Of a normal distribution, with room for what was cut off.
+            // Standard deviation of a normal distribution, enlarged to compensate for the truncation.
             thickness = (1.1 * 1.4826 * median).max(1e-6 * heights.amax());
         }
         let side = -heights.sum().signum();
@@ -132,23 +132,23 @@ impl Wall {
         is_wall.then(|| Wall { normal: normal * side, at, thickness, farthest, on, share, width })
     }
 
-    /// Share of the states over the thickness; differences below a five-hundredth of the way do not count.
+    /// Share of the states per thickness; thicknesses far below a five-hundredth of the largest distance count alike.
     fn density(&self) -> f64 {
         self.share / (self.thickness / self.farthest + 0.002)
     }
 }
 
-/// Distances of states from a plane, negative behind it.
+/// Signed distances of states from a plane, negative behind it.
 fn heights(states: &DMatrix<f64>, at: &DVector<f64>, normal: &DVector<f64>) -> DVector<f64> {
     states.tr_mul(normal).add_scalar(-normal.dot(at))
 }
 
-/// Which states lie on a plane.
+/// Indices of the states on a plane.
 fn near(heights: &DVector<f64>, thickness: f64) -> Vec<usize> {
     (0..heights.len()).filter(|&k| heights[k].abs() < NEAR * thickness).collect()
 }
 
-/// Standard deviations along the principal axes, rising, and the axis of the least.
+/// Standard deviations along the principal axes, ascending, and the axis of the least.
 fn principal(states: &DMatrix<f64>) -> (Vec<f64>, DVector<f64>) {
     let mean = states.column_mean();
     let mut centred = states.clone();
@@ -160,9 +160,9 @@ fn principal(states: &DMatrix<f64>) -> (Vec<f64>, DVector<f64>) {
     (spreads, least)
 }
 
-/// Which states plane number `plane` goes through: point `plane` of a Kronecker sequence in n dimensions, which fills them evenly.
+/// States that define trial plane number `plane`: point `plane` of a Kronecker sequence in n dimensions, which fills them evenly.
 fn spread_out(plane: usize, n: usize, states: usize) -> Vec<usize> {
-    // The root of xⁿ⁺¹ = x + 1, the golden ratio in one dimension.
+    // The root of xⁿ⁺¹ = x + 1; in one dimension this is the golden ratio.
     let ratio = (0..64).fold(2.0_f64, |root, _| (1.0 + root).powf(1.0 / (n + 1) as f64));
     let powers = std::iter::successors(Some(1.0 / ratio), |power| Some(power / ratio));
     let places = powers.take(n).map(|power| ((plane + 1) as f64 * power).fract() * states as f64);
@@ -178,7 +178,7 @@ mod tests {
 
     use super::*;
 
-    /// Movements of π(x) = −x with noise of positions, and the wall n·x ≤ level, n·x of all starts being less.
+    /// Movements of π(x) = −x with noise of positions, and the wall n·x ≤ level; all starts satisfy n·x < level.
     fn movements(normal: &DVector<f64>, level: Option<f64>, noise: f64, rng: &mut ChaCha8Rng) -> Rows {
         let n = normal.len();
         let (mut states, mut velocities, mut indices) = (vec![], vec![], vec![]);
@@ -207,7 +207,7 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(6))]
 
-        /// A wall in the way is found, with its normal and place; movements without one have none.
+        /// A wall in the way is found, with its normal and position; without a wall none is found.
         #[test]
         fn a_wall_is_found(seed in any::<u64>(), n in 2..5usize, level in -1.0..-0.3f64, noise in 0.0..0.03f64, there in any::<bool>()) {
             let mut rng = ChaCha8Rng::seed_from_u64(seed);

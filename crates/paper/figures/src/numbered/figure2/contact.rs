@@ -1,4 +1,4 @@
-//! A finger of two joints that stretches, simulated, and a box that stops its tip.
+//! Simulation of a finger with two joints that stretches, and a box that stops its tip.
 
 use constraints::{ConstraintError, PfaffianConstraint, PointConstraint};
 use demo_gen::{Parabola, RollOut, hand_jacobian};
@@ -15,13 +15,14 @@ const LINKS: [f64; 2] = [0.05, 0.04];
 /// Both joints at the start, radians.
 const START: [f64; 2] = [1.0, -2.4];
 
-/// Where the box begins, metres along x: the face that stops the tip.
+/// The x coordinate of the box's face that stops the tip, metres.
 pub(super) const FACE: f64 = 0.07;
 
-/// Steps of 0.1 ms: the tip enters the box by no more than it moves in one. Eight seconds, until all is at rest.
+/// Steps of 0.1 ms, so that the tip penetrates the box by at most its motion in one step. Eight seconds, until
+/// everything is at rest.
 const ROLL_OUT: RollOut = RollOut { time_step: 0.05, n_samples: 161, sub_steps: 500 };
 
-/// Two links in the plane, and the policy that stretches them.
+/// Two links in the plane, and the policy that stretches the finger.
 pub(super) struct Finger {
     robot: RobotModel,
     links: [LinkId; 3],
@@ -33,11 +34,11 @@ pub(super) struct Finger {
 pub(super) struct Movement {
     /// Both joints, radians.
     pub(super) angles: Vec<(f64, f64)>,
-    /// Both joints and the tip in the plane, metres.
+    /// Positions of both joints and the tip in the plane, metres.
     pub(super) places: Vec<[(f64, f64); 3]>,
 }
 
-/// While the tip is at the face, the policy may not take it through: nᵀJ(q) u = 0, and else nothing.
+/// While the tip is at the face and the policy presses against it, nᵀJ(q) u = 0; otherwise unconstrained.
 pub(super) struct Contact<'a> {
     finger: &'a Finger,
     face: Box<dyn PfaffianConstraint>,
@@ -70,21 +71,21 @@ impl Finger {
         Ok(Finger { robot, links, policy: NegativeGradient(Parabola { weight: 0.5, centre: DVector::zeros(2) }) })
     }
 
-    /// Where both joints and the tip are, metres.
+    /// Positions of both joints and the tip, metres.
     pub(super) fn places(&self, q: DVectorView<'_, f64>) -> anyhow::Result<[(f64, f64); 3]> {
         let mut workspace = Workspace::new();
         let poses = self.robot.forward_kinematics(q, &mut workspace)?;
         Ok(self.links.map(|link| (poses.position(link).x, poses.position(link).y)))
     }
 
-    /// The box in its way.
+    /// The constraint by the box.
     pub(super) fn contact(&self) -> anyhow::Result<Contact<'_>> {
         let jacobian = hand_jacobian(&self.robot, &self.robot.chain(self.links[2]));
         let face = PointConstraint::new(dmatrix![1.0, 0.0, 0.0], 2, jacobian)?;
         Ok(Contact { finger: self, face: Box::new(face) })
     }
 
-    /// What follows from the start under a constraint.
+    /// The movement from the start under a constraint.
     pub(super) fn movement(&self, constraint: &dyn PfaffianConstraint) -> anyhow::Result<Movement> {
         let recording = ROLL_OUT.record(&self.policy.0, constraint, DVector::from_column_slice(&START).as_view())?;
         let mut movement = Movement::default();
@@ -97,10 +98,10 @@ impl Finger {
 }
 
 impl Movement {
-    /// Of each movement.
+    /// Number of samples of each movement.
     pub(super) const SAMPLES: usize = ROLL_OUT.n_samples;
 
-    /// The sample at a time in seconds.
+    /// Index of the sample at a time in seconds.
     pub(super) fn sample(time: f64) -> usize {
         (time / ROLL_OUT.time_step).round() as usize
     }
@@ -111,8 +112,8 @@ impl Movement {
     }
 }
 
-/// Angles at which the tip is at the face, once around zero in so many even steps of direction: on any ray from zero
-/// it draws back.
+/// Angles at which the tip touches the face, in `steps` evenly spaced directions around zero. Along any ray from zero
+/// the tip draws back.
 pub(super) fn touching(steps: u32) -> Vec<(f64, f64)> {
     let [first, second] = LINKS;
     let on_ray = |step: u32| {

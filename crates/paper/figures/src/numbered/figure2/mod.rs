@@ -1,4 +1,4 @@
-//! Fig. 2: a finger that stretches, free and along a box, and what both are in the space of its joints.
+//! Fig. 2: a finger that stretches, free and along a box, and both movements in joint space.
 
 mod contact;
 
@@ -12,7 +12,7 @@ use self::contact::{FACE, Finger, Movement, touching};
 use crate::sound::{Sound, as_many, some, within};
 use crate::{Csv, Drawing, Sources, Who, rounded};
 
-/// Seconds at which postures are drawn, and the colours, ever darker, of the free and of the stopped finger.
+/// Seconds at which postures are drawn, and the colours of the free and the stopped finger, darker with time.
 const POSTURES: [(f64, &str, &str, &str); 5] = [
     (0.0, "at 0 s", "#d0d0d0", "#c6dbef"),
     (0.35, "0.35 s", "#a8a8a8", "#94c0e0"),
@@ -21,23 +21,23 @@ const POSTURES: [(f64, &str, &str, &str); 5] = [
     (8.0, "8 s", "#000000", "#003a5c"),
 ];
 
-/// The policy is the expert's, what the box leaves of it is what is demonstrated: as in every picture.
+/// Colours as in every figure: the policy is the expert's, and its component along the box is the demonstration.
 const FREE: &str = Who::Expert.color();
 const STOPPED: &str = Who::Demonstration.color();
 const BOX: &str = "#3c3c3c";
 const TIP: &str = "#009e73";
 
-/// Arrows are drawn as long as so many seconds of movement.
+/// The length of an arrow corresponds to this many seconds of movement.
 const ARROW_SECONDS: f64 = 0.17;
 
-/// Shorter ones, radians as drawn, would be a head and nothing else.
+/// Shorter arrows, radians as drawn, would consist of the head alone, so they are omitted.
 const SHORTEST_ARROW: f64 = 0.14;
 
 #[derive(Serialize, Deserialize)]
 pub(crate) struct Shown {
     free: Movement,
     stopped: Movement,
-    /// Angles at which the tip touches the box, all around those at which it would be inside.
+    /// Angles at which the tip touches the box: the boundary of the angles at which it would be inside.
     touching: Vec<(f64, f64)>,
     /// (q₁, q₂, u₁, u₂).
     unconstrained: Vec<(f64, f64, f64, f64)>,
@@ -72,7 +72,7 @@ pub(crate) fn shown() -> anyhow::Result<Shown> {
         anyhow::Ok((rounded(a, 4), rounded(b, 4), rounded(left[0], 4), rounded(left[1], 4)))
     };
     let grid = (0..81).map(|i| (f64::from(i % 9 - 4) * 0.45, f64::from(i / 9) * 0.45 - 2.35));
-    // A thousandth inside, so that the tip touches whatever the rounding.
+    // Slightly inside (by a thousandth), so that the tip touches despite rounding.
     let pressed = touching.iter().step_by(3).map(|(a, b)| (0.999 * a, 0.999 * b));
     Ok(Shown {
         unconstrained: grid.map(|q| action(q, &Unconstrained { dim: 2 })).collect::<anyhow::Result<_>>()?,
@@ -100,7 +100,7 @@ pub(crate) fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
     Ok(Drawing { picture: Picture::rows(&[&[a, b, c]]), tables })
 }
 
-/// Where the finger is, metres.
+/// A plane with the positions of the finger, metres.
 fn place(title: &str, layers: Vec<Layer>) -> Plane {
     let (x, y) = ([-0.015, 0.115], [-0.07, 0.065]);
     Plane {
@@ -114,7 +114,7 @@ fn place(title: &str, layers: Vec<Layer>) -> Plane {
     }
 }
 
-/// The finger at a few times, and the way of its tip.
+/// The finger at a few times, and the path of its tip.
 fn postures(movement: &Movement, times: [(f64, &'static str, &'static str); 5]) -> Vec<Layer> {
     let tip = movement.places.iter().map(|places| places[2]).collect();
     let way = Layer::Path {
@@ -133,7 +133,7 @@ fn postures(movement: &Movement, times: [(f64, &'static str, &'static str); 5]) 
     times.into_iter().flat_map(posture).chain([way]).collect()
 }
 
-/// Both movements in the space of the angles, radians.
+/// Both movements in joint space, radians.
 fn angles(shown: &Shown) -> Plane {
     let long = |&&(_, _, u, v): &&(f64, f64, f64, f64), seconds: f64| seconds * u.hypot(v) >= SHORTEST_ARROW;
     let arrows = |arrows: &[_], color, width, seconds, label| Layer::Arrows {

@@ -11,17 +11,17 @@ use rand_chacha::ChaCha8Rng;
 use super::{Levels, Movement};
 use crate::rounded;
 
-/// Movements that alignment leaves out in the paper's picture.
+/// Number of movements that alignment leaves out in the paper's picture.
 const LEFT_OUT: usize = 3;
 
-/// Data sets among which one like the paper's is looked for.
+/// Number of data sets that are searched for one like the paper's.
 const CANDIDATES: u32 = 1000;
 
-/// The surfaces are shown on [−2, 2]², from where starts are drawn, at this many places a side.
+/// The surfaces are shown on [−2, 2]², the region of the starts, at this many places per side.
 const EXTENT: f64 = 2.0;
 const PLACES: u32 = 41;
 
-/// One data set, what alignment found in it, and the generator after it was made.
+/// A data set, the result of its alignment, and the generator's state afterwards.
 struct Found {
     data_set: u32,
     recordings: Vec<Recording>,
@@ -51,7 +51,8 @@ pub(crate) fn levels(seed: u64) -> anyhow::Result<Levels> {
     })
 }
 
-/// The first data set of Table 1's parabola, narrow bandwidth, from which alignment leaves out as many movements as in the paper's picture.
+/// The first data set of Table 1's parabola with narrow bandwidth from which alignment leaves out as many movements as in the paper's
+/// picture.
 fn like_the_paper(system: &ToySystem, seed: u64) -> anyhow::Result<Found> {
     for data_set in 0..CANDIDATES {
         let mut rng = generator(seed, PARABOLA_SYSTEM, data_set);
@@ -68,7 +69,7 @@ fn movements(recordings: &[Recording], aligned: &Aligned) -> Vec<Movement> {
     let before: Vec<&[f64]> = aligned.local_potentials().map(|local| local.values()).collect();
     let raised = |values: &[f64], by: f64| values.iter().map(|value| rounded(value + by, 4)).collect::<Vec<_>>();
     let deepest = before.concat().into_iter().fold(f64::INFINITY, f64::min);
-    // The offsets' sum is 0, and all movements are equally long.
+    // Valid because the offsets sum to 0 and all movements are equally long.
     let kept = aligned.kept().iter();
     let level = mean(kept.map(|&k| recordings[k].truth.potential.mean() - mean(before[k].iter().copied())));
     let movement = |(trajectory, recording): (usize, &Recording)| {
@@ -88,7 +89,7 @@ fn mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {
     values.sum::<f64>() / count
 }
 
-/// A side of the square that is shown.
+/// Coordinates along one side of the square.
 fn side() -> Vec<f64> {
     let place = |i| EXTENT * (2.0 * f64::from(i) / f64::from(PLACES - 1) - 1.0);
     (0..PLACES).map(|i| rounded(place(i), 4)).collect()

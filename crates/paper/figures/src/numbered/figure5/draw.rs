@@ -4,10 +4,10 @@ use super::{Levels, Movement};
 use crate::state_plane::state_plane;
 use crate::{Csv, Drawing, Sources, demonstrated};
 
-/// What is seen from above: [−2, 2]².
+/// The region of states that is shown: [−2, 2]².
 const EXTENT: f64 = 2.0;
 
-/// The box of all heights, with some room beside it.
+/// The box around the surfaces, with a margin, and its range of heights.
 const BOX: f64 = 2.2;
 const HEIGHTS: [f64; 2] = [-0.04, 0.4];
 
@@ -33,7 +33,7 @@ pub(crate) fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
     Ok(Drawing { picture, tables: vec![local_potentials(&levels), surfaces(&levels)?] })
 }
 
-/// The demonstrations over lines of equal potential; discarded ones as crosses.
+/// The demonstrations over contours of the potential; discarded ones as crosses.
 fn seen(levels: &Levels) -> Plane {
     let movements = levels.movements.iter().map(|movement| (&movement.points[..], movement.after.is_some()));
     let layers = demonstrated::layers(&levels.truth, movements, 1.4);

@@ -1,4 +1,4 @@
-//! Fig. 5: one data set of the parabola, from what is seen of it to the learnt surface.
+//! Fig. 5: one data set of the parabola, from the observations to the learnt surface.
 
 pub(crate) mod compute;
 pub(crate) mod draw;
@@ -8,16 +8,16 @@ use serde::{Deserialize, Serialize};
 
 use crate::sound::{Sound, as_many, field, grid, some};
 
-/// What the figure shows.
+/// Data of the figure.
 #[derive(Serialize, Deserialize)]
 pub(crate) struct Levels {
-    /// Which data set of the system it is.
+    /// Index of the data set.
     data_set: u32,
     movements: Vec<Movement>,
     truth: Field,
-    /// At the places of `truth`; nothing where no receptive field speaks.
+    /// At the places of `truth`; `None` where no receptive field is active.
     learnt: Vec<Vec<Option<f64>>>,
-    /// Errors at samples that the regression did not see, (A4) and (A3).
+    /// Errors at held-out samples, (A4) and (A3).
     alignment_nmse: f64,
     potential_nmse: f64,
 }
@@ -54,6 +54,6 @@ struct Movement {
     truth: Vec<f64>,
     /// The local potential, with the same constant for all movements.
     before: Vec<f64>,
-    /// The aligned local potential; nothing if alignment leaves the movement out.
+    /// The aligned local potential; `None` if alignment leaves the movement out.
     after: Option<Vec<f64>>,
 }

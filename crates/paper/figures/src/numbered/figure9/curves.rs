@@ -1,4 +1,4 @@
-//! Errors among the samples near the goal along the line, and near the line.
+//! Errors at samples near the goal, along the line and around it.
 
 use anyhow::Context as _;
 use experiments::{Distance, TENTHS};
@@ -7,14 +7,14 @@ use plot::{Axis, Curve, Curves};
 use crate::errors::{BASELINES, FIRST, Series, axis_down_to};
 use crate::{Csv, Sources};
 
-/// Pixels, and of them for the names of curves.
+/// Size in pixels, and the part of its width for the names of curves.
 const SIZE: (f64, f64) = (620.0, 420.0);
 const ROOM: f64 = 95.0;
 
-/// Of both panels; from the lower end on the axis is broken.
+/// Range of both panels; below it the axis is broken.
 const Y: [f64; 2] = [0.01, 2.0];
 
-/// (d) and (e), and their numbers.
+/// Panels (d) and (e), and their numbers.
 pub(super) struct Panels {
     pub(super) along: Curves,
     pub(super) around: Curves,

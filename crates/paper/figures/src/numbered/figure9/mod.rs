@@ -1,4 +1,4 @@
-//! Fig. 9: where the three-link arm's movements end, and what can be learnt there.
+//! Fig. 9: where the three-link arm's movements end, and how well the policy is learnt there.
 
 mod curves;
 mod scenes;

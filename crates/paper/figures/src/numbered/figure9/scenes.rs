@@ -1,4 +1,4 @@
-//! Movements in joint space: where they end, and what distances along and from that line mean.
+//! Movements in joint space: their ends, and the distances along the line of ends and from it.
 
 use experiments::line;
 use nalgebra::{Point3, Vector3};
@@ -6,10 +6,10 @@ use plot::{Camera, Dash, Frame, Item, Paint, Space, Stroke};
 
 use crate::Who;
 
-/// So many movements are drawn.
+/// Number of movements that are drawn.
 const SHOWN: usize = 50;
 
-/// The frame is [−1, 1]³, from where starts are drawn, and room for the cylinder.
+/// Half the side of the frame: [−1, 1]³, the region of the starts, with room for the cylinder.
 const EXTENT: f64 = 1.3;
 
 /// The distance of the planes from 0, and the radius of the cylinder, radians.
@@ -23,14 +23,15 @@ const LINE: &str = "#1a1a1a";
 const BOUND: &str = "#e69f00";
 const GOAL: &str = "#cc79a7";
 
-/// What lines are called; under the first scene, of all three.
+/// Labels of the lines, which appear only under the first of the three scenes.
 const NAMES: [Option<&str>; 2] = [Some("movement"), Some("line l")];
 const NAMELESS: [Option<&str>; 2] = [None; 2];
 
-/// Seen from the first two joints: q₁ to the right, q₂ upwards.
+/// View along q₃: q₁ to the right, q₂ upwards.
 const ABOVE: Camera = Camera { azimuth: -90.0, elevation: 90.0 };
 
-/// (a) in perspective; (b), (c) on the first two joints, with planes along the line and a cylinder around it.
+/// (a) in perspective; (b), (c) projected onto the first two joints, with planes across the line and a cylinder around
+/// it.
 pub(super) fn scenes(movements: &[Vec<(f64, f64, f64)>]) -> [Space; 3] {
     let shown = &movements[..SHOWN.min(movements.len())];
     let perspective = Camera { azimuth: -50.0, elevation: 20.0 };
@@ -85,7 +86,7 @@ fn planes() -> Vec<Item> {
     vec![plane(-PLANE_AT), plane(PLANE_AT)]
 }
 
-/// An arrow from 0 with the letter of the distance so far from its end, pixels.
+/// An arrow from 0, with the distance's letter `shift` pixels from its end.
 fn distance(letter: &str, to: Vector3<f64>, shift: (f64, f64)) -> Vec<Item> {
     let stroke = Stroke { color: LINE, width: 2.4, dash: Dash::Solid };
     let to = Point3::from(to);
@@ -93,12 +94,12 @@ fn distance(letter: &str, to: Vector3<f64>, shift: (f64, f64)) -> Vec<Item> {
     vec![Item::Arrow { from: Point3::origin(), to, stroke }, note]
 }
 
-/// Along the line; the letter stands where no movement ends.
+/// The distance along the line; the letter is where no movement ends.
 fn depth() -> Vec<Item> {
     distance("d", line() * PLANE_AT, (-8.0, -11.0))
 }
 
-/// Across the line, as seen from above.
+/// The distance across the line, as seen from above.
 fn radius() -> Vec<Item> {
     distance("r", line().cross(&Vector3::z()).normalize() * RADIUS, (4.0, 12.0))
 }

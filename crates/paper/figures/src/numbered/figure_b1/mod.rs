@@ -1,4 +1,4 @@
-//! Fig. B1: how trajectories that nothing connects firmly come apart, step by step.
+//! Fig. B1: step-by-step separation of trajectories that are only weakly connected.
 
 mod tree;
 
@@ -16,19 +16,19 @@ use crate::sound::{Sound, among, as_many, some};
 use crate::{Csv, Drawing, Sources, rounded};
 use tree::Node;
 
-/// Data sets of Table 1 among which one is chosen.
+/// Number of data sets of Table 1 from which one is chosen.
 const DATA_SETS: u32 = 30;
 
-/// The tree of more steps would be too wide.
+/// Largest number of steps; the tree of more would be too wide.
 const MOST_STEPS: usize = 6;
 
-/// A small picture's side, from one to the next, around lines between them, and around all, pixels.
+/// In pixels: side of a small picture, space between pictures, gap between a line and a picture, and outer margin.
 const SIDE: f64 = 120.0;
 const BETWEEN: f64 = 62.0;
 const GAP: f64 = 6.0;
 const MARGIN: f64 = 14.0;
 
-/// Of what holds the movements that are kept in the end, and of what is cut off from them.
+/// Colours of the groups that contain the finally kept movements, and of those that are cut off.
 const KEPT: &str = Who::Demonstration.color();
 const CUT_OFF: &str = "#b0578d";
 
@@ -57,14 +57,14 @@ pub(crate) struct ComingApart {
 #[derive(Debug, Serialize, Deserialize)]
 struct Step {
     group: Vec<usize>,
-    /// The largest first.
+    /// Largest first.
     parts: Vec<Vec<usize>>,
-    /// Eigenvalues below the threshold; none where no link held the parts.
+    /// Number of eigenvalues below the threshold; `None` if no link connected the parts.
     weak: Option<usize>,
 }
 
-/// The data set that comes apart in most steps, though in no more than fit; of several that in which most trajectories
-/// are parted from larger groups.
+/// The data set with the most steps of separation, at most [`MOST_STEPS`]; among several, the one in which most
+/// trajectories are separated from larger groups.
 pub(crate) fn coming_apart(seed: u64) -> anyhow::Result<ComingApart> {
     let mut best = None;
     for data_set in 0..DATA_SETS {
@@ -97,7 +97,7 @@ impl Sound for ComingApart {
         for Step { group, parts, .. } in &self.steps {
             some("parts of a step", parts)?;
             parts.iter().chain([group]).try_for_each(|part| among("a part", part, self.movements.len()))?;
-            // Parts are smaller than their group, or the tree would have no end.
+            // Parts are smaller than their group; otherwise the tree would be infinite.
             parts.iter().try_for_each(|part| some("movements of a part", part))?;
             anyhow::ensure!(parts.len() > 1, "a group comes apart into {} part", parts.len());
             as_many("movements of all parts of a step", &parts.concat(), group.len())?;
@@ -129,7 +129,7 @@ pub(crate) fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
     Ok(Drawing { picture: Picture::rows(&[&[&canvas]]), tables: vec![apart.table()] })
 }
 
-/// Where nodes of this depth begin, pixels.
+/// Left edge of nodes at this depth, pixels.
 fn place_of(depth: usize) -> f64 {
     MARGIN + (SIDE + BETWEEN) * depth as f64
 }
@@ -144,7 +144,7 @@ fn edges(node: &Node<'_>) -> Vec<Thing> {
         let (color, width) = if part.kept { (KEPT, 2.6) } else { (CUT_OFF, 1.4) };
         Thing::Line { points, stroke: Stroke { color, width, dash: Dash::Solid } }
     };
-    // What is kept lies over the rest where lines meet.
+    // Edges to kept groups are drawn last, on top where lines meet.
     node.parts.iter().rev().map(edge).collect()
 }
 
@@ -153,7 +153,7 @@ fn words(at: (f64, f64), text: String, centred: bool, color: Option<&'static str
 }
 
 impl ComingApart {
-    /// A node in its place: a picture with words, or words alone.
+    /// A node at its position: a picture with words, or words alone.
     fn drawn(&self, node: &Node<'_>) -> Vec<Thing> {
         let (left, many) = (place_of(node.depth), node.group.len());
         if !node.is_pictured() {
@@ -201,7 +201,7 @@ impl ComingApart {
     }
 }
 
-/// Words above and below a picture: how many movements, into what they come apart, and why.
+/// Words above and below a picture: the number of movements, the sizes of its parts, and the cause of the separation.
 fn beside(node: &Node<'_>) -> Vec<Thing> {
     let many = node.group.len();
     let above = match (node.depth, node.step) {

@@ -1,34 +1,34 @@
-//! The tree of groups, and where each stands in the picture.
+//! The tree of groups, with their positions in the picture.
 
 use super::Step;
 
-/// A group of movements, what becomes of it, and where it stands.
+/// A group of movements, its parts, and its position.
 #[derive(Debug)]
 pub(super) struct Node<'a> {
-    /// Places of its movements.
+    /// Indices of its movements.
     pub(super) group: Vec<usize>,
-    /// Into how many parts they come apart: small ones of one step stand as one.
+    /// Number of groups that the node represents; small ones of one step share a node.
     pub(super) groups: usize,
-    /// In which it comes apart; none where it stays whole.
+    /// The step that separates it; `None` if it stays whole.
     pub(super) step: Option<&'a Step>,
-    /// The one with the kept group in it first, else the largest.
+    /// The part with the kept group first, then by size, largest first.
     pub(super) parts: Vec<Node<'a>>,
-    /// Whether the kept group is it or within it.
+    /// Whether it is the kept group or contains it.
     pub(super) kept: bool,
-    /// How many steps it is from all.
+    /// Number of steps from the root.
     pub(super) depth: usize,
-    /// Where its middle is, pixels from above.
+    /// Vertical position of its centre, pixels from the top.
     pub(super) middle: f64,
-    /// How high it is with all its parts, pixels.
+    /// Height including all its parts, pixels.
     pub(super) height: f64,
 }
 
-/// How high a node is by itself, pixels: with a picture, and of words alone.
+/// Height of a node without its parts, pixels: with a picture, and with words alone.
 pub(super) const PICTURE: f64 = 196.0;
 pub(super) const WORDS: f64 = 34.0;
 
 impl<'a> Node<'a> {
-    /// All groups that these movements come apart into, in their places from this height down.
+    /// The tree of all groups into which these movements separate, with positions from the top down.
     pub(super) fn of(all: Vec<usize>, steps: &'a [Step], kept: &[usize]) -> Node<'a> {
         let mut root = Node::grown(all, 1, 0, steps, kept);
         root.place(0.0);
@@ -39,7 +39,7 @@ impl<'a> Node<'a> {
         let comes_apart = |group: &[usize]| steps.iter().find(|step| step.group == group);
         let step = comes_apart(&group);
         let mut parts = step.map_or(vec![], |step| {
-            // Of several parts those that only end there stand as one.
+            // Small parts that do not separate further share one node.
             let alone = |part: &&Vec<usize>| **part == step.parts[0] || **part == kept || comes_apart(part).is_some();
             let (mut named, rest): (Vec<_>, Vec<_>) = step.parts.iter().partition(alone);
             let together: Vec<usize> = rest.iter().flat_map(|part| part.iter().copied()).collect();
@@ -54,7 +54,7 @@ impl<'a> Node<'a> {
         Node { group, groups, step, parts, kept, depth, middle: 0.0, height: own.max(of_parts) }
     }
 
-    /// Puts it and its parts below this height.
+    /// Places the node and its parts below `top`.
     fn place(&mut self, top: f64) {
         self.middle = top + self.height / 2.0;
         let of_parts: f64 = self.parts.iter().map(|part| part.height).sum();
@@ -65,12 +65,12 @@ impl<'a> Node<'a> {
         }
     }
 
-    /// Whether it is drawn as a picture, not in words alone.
+    /// Whether it is drawn as a picture; otherwise in words alone.
     pub(super) fn is_pictured(&self) -> bool {
         self.step.is_some() || self.kept
     }
 
-    /// It and all within it.
+    /// The node and all its descendants.
     pub(super) fn all(&self) -> Vec<&Node<'a>> {
         std::iter::once(self).chain(self.parts.iter().flat_map(Node::all)).collect()
     }
@@ -84,7 +84,8 @@ mod tests {
         Step { group: group.to_vec(), parts: parts.iter().map(|part| part.to_vec()).collect(), weak }
     }
 
-    /// Seven fall into four, two and one; the four are cut into two and two, of which the later are kept.
+    /// Seven movements separate into four, two and one; the four separate into two and two, of which the second pair is
+    /// kept.
     fn steps() -> [Step; 2] {
         [
             step(&[0, 1, 2, 3, 4, 5, 6], &[&[0, 1, 2, 3], &[4, 5], &[6]], None),

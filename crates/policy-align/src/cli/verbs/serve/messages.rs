@@ -1,4 +1,4 @@
-//! Messages of ROS 2, field by field as they are on the wire.
+//! Messages of ROS 2; the fields are in the order of the wire format.
 
 use ros2_client::builtin_interfaces::Time;
 use serde::{Deserialize, Serialize};
@@ -10,7 +10,7 @@ pub(super) struct Header {
     pub(super) frame_id: String,
 }
 
-/// sensor_msgs/JointState: rad or m, rad/s or m/s; every field of a joint has one number for each name, or none at all.
+/// sensor_msgs/JointState: rad or m, rad/s or m/s. Each array holds one number per name or is empty.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub(super) struct JointState {
     pub(super) header: Header,
@@ -43,7 +43,7 @@ struct Dimension {
 }
 
 impl JointState {
-    /// Velocities of joints, now.
+    /// Velocities of joints, stamped with the current time.
     pub(super) fn of_velocities(joints: &[String], velocities: &[f64]) -> Self {
         JointState {
             header: Header { stamp: Time::now(), frame_id: String::new() },
@@ -56,7 +56,7 @@ impl JointState {
 }
 
 impl Float64MultiArray {
-    /// Numbers without a layout, as controllers take them.
+    /// Numbers without a layout, as controllers expect them.
     pub(super) fn of(data: &[f64]) -> Self {
         Float64MultiArray { layout: Layout::default(), data: data.to_vec() }
     }

@@ -1,4 +1,4 @@
-//! The node of ROS 2: joint states in, commands out, and zero when it ends.
+//! The ROS 2 node: it receives joint states, sends commands, and sends zero when it ends.
 
 use std::io;
 use std::thread::sleep;
@@ -16,12 +16,12 @@ use serde::Serialize;
 use super::messages::{Float64MultiArray, JointState};
 use crate::cli::failure::{Exit, Failure};
 
-/// Messages of one publisher after another that wait for this node, at most.
+/// Largest number of messages queued for this node.
 const DEPTH: usize = 16;
-/// Zero commands at the end, and the time between them, in which they are sent.
+/// Number of zero commands at the end, and the time between them, which is needed to send them.
 const LAST: usize = 3;
 const BETWEEN: Duration = Duration::from_millis(40);
-/// Addresses of DDS allow these domains.
+/// Largest domain that the addresses of DDS allow.
 const LARGEST_DOMAIN: u16 = 232;
 
 /// How velocities are sent.
@@ -34,7 +34,7 @@ pub(super) enum CommandMessage {
 }
 
 impl CommandMessage {
-    /// The topic that takes it where none is named.
+    /// The default topic for these messages.
     pub(super) fn usual_topic(self) -> &'static str {
         match self {
             CommandMessage::Array => "/velocity_controller/commands",
@@ -43,26 +43,28 @@ impl CommandMessage {
     }
 }
 
-/// What publishes commands.
+/// The publisher of commands.
 enum Commands {
     Array(Publisher<Float64MultiArray>),
     JointState(Publisher<JointState>),
 }
 
-/// A node that is connected to the topics of one robot. Dropped, it commands zero: controllers keep to the last command.
+/// A node that is connected to the topics of one robot. When dropped, it commands zero, because controllers hold the last
+/// command.
 pub(super) struct RobotNode {
     commands: Commands,
     states: Subscription<JointState>,
     poll: Poll,
     joints: Vec<String>,
-    /// Topic of the commands, as DDS names it.
+    /// Topic of the commands, by its name in DDS.
     command_topic: String,
     context: Context,
     _node: Node,
 }
 
 impl RobotNode {
-    /// In the domain of ROS_DOMAIN_ID; within this machine if ROS_LOCALHOST_ONLY or ROS_AUTOMATIC_DISCOVERY_RANGE says so.
+    /// Joins the domain ROS_DOMAIN_ID; stays within this machine if ROS_LOCALHOST_ONLY or ROS_AUTOMATIC_DISCOVERY_RANGE
+    /// requires it.
     pub(super) fn new(
         joints: Vec<String>,
         states: &str,
@@ -84,7 +86,7 @@ impl RobotNode {
         let options = NodeOptions::new().enable_rosout(false).start_parameter_services(false);
         let mut node = context.new_node(name, options).map_err(|error| failed(&format!("{error:?}")))?;
 
-        // Best effort takes from publishers of both kinds, and never an old state after a new one.
+        // A best-effort subscription accepts publishers of both kinds, and never delivers an old state after a new one.
         let newest = QosProfile::subscription_default().history(History::KeepLast { depth: DEPTH });
         let joint_state = || MessageTypeName::new("sensor_msgs", "JointState");
         let topic = node.create_topic(&topic_name(states, "--topic")?, joint_state(), &newest);
@@ -94,7 +96,7 @@ impl RobotNode {
         let registered = poll.registry().register(&mut states, Token(0), Interest::READABLE);
         registered.map_err(|error| failed(&error))?;
 
-        // Controllers ask for reliable. A full window must not hold the loop up: the next command is newer.
+        // Controllers require reliable publishers. A full window must not block the loop: the next command is newer.
         let newest = QosProfile::publisher_default().reliability_reliable(WhenFull::Fail);
         let kind = match message {
             CommandMessage::Array => MessageTypeName::new("std_msgs", "Float64MultiArray"),
@@ -111,7 +113,7 @@ impl RobotNode {
         Ok(RobotNode { commands, states, poll, joints, command_topic, context, _node: node })
     }
 
-    /// Hands over joint states as they come, until `end`.
+    /// Passes joint states to `take` as they arrive, until `end`.
     pub(super) fn receive_until(
         &mut self,
         end: Instant,
@@ -137,7 +139,8 @@ impl RobotNode {
         }
     }
 
-    /// Sends velocities of the joints, in their order. False: a subscriber has not taken those before, and these are lost.
+    /// Sends velocities of the joints, in their order. Returns false if they are lost because a subscriber has not
+    /// confirmed earlier ones.
     pub(super) fn send(&self, velocities: &[f64]) -> Result<bool, Failure> {
         match &self.commands {
             Commands::Array(publisher) => sent(publisher.publish(Float64MultiArray::of(velocities))),
@@ -147,7 +150,7 @@ impl RobotNode {
         }
     }
 
-    /// Number of subscribers of the commands, in all of the domain.
+    /// Number of subscribers to the commands in the whole domain.
     pub(super) fn listeners(&self) -> usize {
         let readers = self.context.domain_participant().discovered_readers();
         readers.iter().filter(|reader| *reader.subscription_topic_data.topic_name() == self.command_topic).count()
@@ -157,7 +160,7 @@ impl RobotNode {
 impl Drop for RobotNode {
     fn drop(&mut self) {
         for _ in 0..LAST {
-            // What fails here cannot be told; the next is tried all the same.
+            // An error here cannot be reported; the next command is sent anyway.
             let _ = self.send(&vec![0.0; self.joints.len()]);
             sleep(BETWEEN);
         }
@@ -199,7 +202,7 @@ fn domain() -> Result<u16, Failure> {
     })
 }
 
-/// Whether nodes of other machines are to stay unseen.
+/// Whether discovery is limited to this machine.
 fn is_local() -> bool {
     let is = |name: &str, value: &str| std::env::var(name).is_ok_and(|text| text.eq_ignore_ascii_case(value));
     is("ROS_LOCALHOST_ONLY", "1") || is("ROS_AUTOMATIC_DISCOVERY_RANGE", "localhost")

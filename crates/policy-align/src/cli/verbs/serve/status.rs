@@ -1,4 +1,4 @@
-//! What is shown while a robot moves: a line on a terminal, a line where it stops or starts, or lines of JSON.
+//! Output while a robot moves: a status line on a terminal, a line when the robot stops or starts, or lines of JSON.
 
 use std::time::{Duration, Instant};
 
@@ -10,7 +10,7 @@ use crate::cli::failure::{Exit, Failure};
 use crate::cli::lines::{Lines, short};
 use crate::cli::session::{Output, Session, complain, tell};
 
-/// Time between two looks at the rate, and between two lines of JSON at most.
+/// Time between two updates of the rate; lines of JSON are at most this far apart.
 const LOOK: Duration = Duration::from_secs(1);
 
 pub(super) struct Status<'a> {
@@ -18,14 +18,14 @@ pub(super) struct Status<'a> {
     bar: ProgressBar,
     start: Instant,
     look: Instant,
-    /// Commands since the last look, in all, those of zero, and those that were not taken.
+    /// Numbers of commands: since the last update, in total, with zero velocity, and lost.
     since: usize,
     sent: usize,
     zero: usize,
     lost: usize,
     rate: Option<f64>,
     listeners: usize,
-    /// Why the robot is stopped, in a word, or that it moves, as shown last.
+    /// The state shown last: the reason for a stop in one word, or that the robot moves.
     shown: Option<&'static str>,
 }
 
@@ -36,7 +36,7 @@ impl<'a> Status<'a> {
         Status { session, bar, start, look: start, since, sent, zero, lost, rate: None, listeners, shown: None }
     }
 
-    /// Of one command, whether it was sent, and who listens.
+    /// Counts a command and shows changes. `sent` is false for a lost command; `listeners` counts the subscribers.
     pub(super) fn tell(
         &mut self,
         command: &VelocityCommand,
@@ -95,7 +95,7 @@ impl<'a> Status<'a> {
         })
     }
 
-    /// All that was sent.
+    /// Summary of all commands.
     pub(super) fn finish(self) -> Output {
         self.bar.finish_and_clear();
         let rate = self.sent as f64 / self.start.elapsed().as_secs_f64().max(f64::MIN_POSITIVE);

@@ -86,7 +86,8 @@ impl Serve {
         let mut next = start;
         while !interrupted() && end.is_none_or(|end| start.elapsed() < end) {
             let now = Instant::now();
-            // In pieces, so that an interrupt is heard at any rate. What waits is taken also where a command took longer than a period.
+            // Waits in short pieces, so that an interrupt is noticed at any rate. Queued states are read even if a command took longer
+            // than a period.
             let piece = next.clamp(now, now + Duration::from_millis(50));
             node.receive_until(piece, &mut |state, came| {
                 controller.observe(&state.name, &state.position, came - start);
@@ -97,7 +98,7 @@ impl Serve {
             let command = controller.command(start.elapsed());
             let sent = node.send(command.velocities.as_slice())?;
             status.tell(&command, sent, &|| node.listeners())?;
-            // Ticks that were missed are not made up for.
+            // Missed ticks are skipped.
             next = (next + period).max(Instant::now());
         }
         Ok(status.finish())
@@ -141,7 +142,7 @@ impl Serve {
     }
 
     fn period(&self) -> Result<Duration, Failure> {
-        // Between two commands a robot is not stopped.
+        // A robot cannot be stopped between two commands.
         let fits = self.rate <= 10_000.0 && self.rate * self.stale >= 1.0;
         let period = fits.then(|| Duration::try_from_secs_f64(self.rate.recip()).ok()).flatten();
         period.ok_or_else(|| {
