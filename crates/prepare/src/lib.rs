@@ -63,6 +63,7 @@ mod repairs;
 mod samples;
 mod scale;
 mod velocity_source;
+mod wall;
 
 pub use channel::StateChannel;
 pub use direction::{direction_by_channels, sum_of_parts};
@@ -77,6 +78,7 @@ pub use samples::smooth::with_slopes;
 pub use samples::still::trim_still;
 pub use samples::thinning::thinned;
 pub use velocity_source::VelocitySource;
+pub use wall::Wall;
 
 use std::borrow::Cow;
 
