@@ -43,11 +43,14 @@ pub struct Wall {
 }
 
 impl Wall {
-    /// The most densely populated wall among `states` (n, N), n ≥ 2; `movement` holds the number of each state's movement, (N).
+    /// The most densely populated wall among `states` (n, N); `movement` holds the number of each state's movement, (N).
     /// Trial planes pass through n states each, spread evenly over all by a fixed sequence, so the result is deterministic. A trial
-    /// succeeds if all n states lie on the wall, which is rare for n > 4.
+    /// succeeds if all n states lie on the wall, which is rare for n > 4. `None` for n < 2.
     pub fn of(states: &DMatrix<f64>, movement: &[usize]) -> Option<Wall> {
         let (n, count) = states.shape();
+        if n < 2 || count == 0 {
+            return None;
+        }
         let movements = movement.iter().collect::<HashSet<_>>().len() as f64;
         let all: Vec<usize> = (0..count).collect();
         let widest = Plane::fitted(states, &all).deviations[n - 1];
