@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Alignment, integration to offsets and kept set: this project beside dense_numpy.py, one thread each.
+"""Compares this project with dense_numpy.py, one thread each: alignment, integration to offsets and kept set.
 
-usage: compare_align.py [--program PATH] [--repeat R] [--keep DIR]
+usage: compare_align.py [--program PATH] [--repeat R]
 
 Writes each data set to a file, runs both on it, compares the bandwidth, the kept set, H, a and the offsets, and only then prints
 CPU and wall seconds (minima over the repetitions) and their ratio. Builds the program if no path is given.
-Ends with an error where results differ.
+Ends with an error if results differ.
 """
 import argparse, json, os, pathlib, subprocess, sys, tempfile
 for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "RAYON_NUM_THREADS"):
@@ -32,7 +32,7 @@ CASES = [
 
 
 def toy(rng, trajectories, samples, dimensions):
-    """States (K, N, n) on the parabola .05|x|^2 under a one-dimensional random constraint, drawn anew every 20 steps."""
+    """States (K, N, n) on the parabola .05|x|^2 under a one-dimensional random constraint, redrawn every 20 steps."""
     x = rng.uniform(-2, 2, (trajectories, dimensions))
     states = []
     for step in range(samples):
@@ -58,7 +58,7 @@ def ours(program, path):
 
 
 def check(name, theirs, found):
-    """Both must have found the same; offsets as nearly as the peer's own rounding, about 1e-16 / lambda_2, allows."""
+    """Exits unless both results agree, the offsets to within the peer's own rounding, about 1e-16 / lambda_2."""
     kept = np.flatnonzero(theirs["keep"])
     values = float(np.abs(theirs["a"]).max())
     problems = []

@@ -1,17 +1,17 @@
 #!/usr/bin/env python3
-"""Policies learnt under constraints A u = b: the slope GP beside the estimators of constraints.py, on the same data.
+"""Compares policies learnt under constraints A u = b: the slope GP and the estimators of constraints.py, on the same data.
 
 usage: compare_constraints.py [--sets 5] [--generators cycle,cycle-task,wiping,wiping-flat] [--decibels none,50,40,30,20,10] [--rows 400]
                               [--jobs 2] [--program PATH]
 
-Errors are nUPE at the states of 20 fresh movements: medians over the data sets. The estimators know the rank of A; with "J" also the arm's
-Jacobian, and GSVD its pose, of which b is a linear function, or not, whichever has the lower true error. The slope GP knows none of it, and "ours, J"
-the Jacobians of the tool's position, its orientation and both. Builds the program if no path is given.
+Errors are nUPE at the states of 20 fresh movements: medians over the data sets. The estimators receive the rank of A; with "J" also the arm's
+Jacobian, and GSVD is tried with and without its pose, of which b is a linear function: the lower true error counts. The slope GP receives none of
+these, and "ours, J" the Jacobians of the tool's position, its orientation and both. Builds the program if no path is given.
 """
 import argparse, json, os, pathlib, subprocess, sys
 from concurrent.futures import ProcessPoolExecutor
 for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "RAYON_NUM_THREADS"):
-    os.environ[name] = "1"  # one process a data set
+    os.environ[name] = "1"  # one process per data set
 import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
@@ -32,7 +32,7 @@ def read(program, generator, number, decibels, rows):
 
 
 def movements_for(peer, found, generator):
-    """The movements with what the peer knows of the arm, in each form."""
+    """The movements with the kinematics of the arm that the peer receives, in each variant."""
     plain = [{"x": x, "u": u} for x, u in zip(found["states"], found["velocities"])]
     if not peer.endswith("J"):
         return [plain]
@@ -47,7 +47,7 @@ def movements_for(peer, found, generator):
 
 
 def errors(task):
-    """nUPE of each peer, of ours without the arm and with it on one data set, and facts of ours."""
+    """nUPE on one data set of each peer, of ours without the arm and of ours with it, and facts about ours."""
     program, generator, number, decibels, rows = task
     found = read(program, generator, number, decibels, rows)
     error = lambda policy: constraints.nupe(policy, found["test_states"], found["test_actions"])

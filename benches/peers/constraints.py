@@ -1,16 +1,16 @@
 #!/usr/bin/env python3
-"""Estimators of policies under constraints A u = b, written from their formulas: NumPy alone.
+"""Estimators of policies under constraints A u = b, implemented from their formulas in NumPy alone.
 
-    DPL    u = pi(x): least squares on what was observed
+    DPL    u = pi(x): least squares on the observations
     SVD    A of each movement from A u = 0: the least singular vectors of its velocities; then least squares on |N (pi(x) - u)|^2
     GSVD   A and b of each movement from A u = b with |A| = 1; then the same least squares
     CCL    least squares on (u'pi(x)/|u| - |u|)^2
 
 (DPL, SVD, GSVD: Armesto, Moura, Ivan, Salas, Vijayakumar 2017, and with Erden 2018; CCL: Howard, Klanke, Gienger, Goerick, Vijayakumar 2009, and
-its unit normal: Lin, Howard, Vijayakumar 2015.)  All have policies pi(x) = W phi(x) of locally weighted linear models: normalised Gaussians about
-the centres of k-means. How many, how wide and how much ridge is chosen on held-out movements by each estimator's own loss.
+its unit normal: Lin, Howard, Vijayakumar 2015.)  All policies are pi(x) = W phi(x), locally weighted linear models with normalised Gaussians
+about the centres of k-means. Each estimator's own loss on held-out movements selects their number, their width and the ridge.
 
-A movement is a dict: x (N, n), u (N, n) and, of an arm whose kinematics are given to the estimator, J (N, m, n) and z (N, p):
+A movement is a dict: x (N, n), u (N, n) and, if the estimator receives the kinematics of an arm, J (N, m, n) and z (N, p):
 A = W_A J and b = W_b z. Without them A and b are constant.
 
 usage: constraints.py --self-test
@@ -19,7 +19,7 @@ import sys
 import numpy as np
 
 CENTRES = {2: (10, 25, 50), 7: (1, 6, 12)}
-WIDTHS = (0.7, 1.0, 1.5)  # in distances to the nearest other centre
+WIDTHS = (0.7, 1.0, 1.5)  # in units of the distance to the nearest other centre
 RIDGES = (1e-10, 1e-7, 1e-4, 1e-2)
 
 
@@ -50,14 +50,14 @@ class Features:
 
     def __call__(self, x):
         exponents = -0.5 * squared_distances(x, self.centres) / self.scale ** 2
-        weights = np.exp(exponents - exponents.max(1, keepdims=True))  # far from all centres the nearest one counts
+        weights = np.exp(exponents - exponents.max(1, keepdims=True))  # far from all centres, only the nearest one counts
         weights /= weights.sum(1, keepdims=True)
         local = np.concatenate([(x[:, None, :] - self.centres) / self.scale, np.ones((len(x), len(self.centres), 1))], 2)
         return (weights[:, :, None] * local).reshape(len(x), -1)
 
 
 def normal_equations(phi, weights, u):
-    """Of sum |P (W'phi - u)|^2 over the entries of W (features, n), column after column; P'P = weights (N, n, n)."""
+    """Normal equations for the least sum |P (W'phi - u)|^2 over W (features, n), column by column; P'P = weights (N, n, n)."""
     n, count = u.shape[1], phi.shape[1]
     matrix = np.empty((n, count, n, count))
     for a in range(n):
@@ -69,7 +69,7 @@ def normal_equations(phi, weights, u):
 
 
 class LeastSquares:
-    """All ridges of one weighted regression, from one eigenvalue problem."""
+    """One weighted regression, solved for all ridges with one eigendecomposition."""
 
     def __init__(self, phi, weights, u):
         self.shape = (u.shape[1], phi.shape[1])
@@ -88,7 +88,7 @@ def loss(policy, x, u, weights):
 
 
 def fit(movements, weigh, seed=0):
-    """The policy of least squares weighted by weigh(movement) (N, n, n), its form chosen on every fifth movement."""
+    """The least-squares policy with weights weigh(movement) (N, n, n); every fifth movement is held out to select its form."""
     weights = [weigh(movement) for movement in movements]
     together = lambda chosen: tuple(np.concatenate(parts) for parts in zip(
         *[(movements[k]["x"], movements[k]["u"], weights[k]) for k in chosen]))
@@ -115,17 +115,17 @@ def fit(movements, weigh, seed=0):
 # Constraints ---------------------------------------------------------------------------------------------------------
 
 def least_singular_vectors(rows, rank):
-    """The `rank` unit vectors v (rank, m), at right angles, of least |rows v|."""
+    """The `rank` orthonormal vectors v (rank, m) with the least |rows v|."""
     return np.linalg.svd(rows, full_matrices=True)[2][-rank:]
 
 
 def unit_normal(u):
-    """CCL's normal of a movement: of unit length, of least sum (n'u)^2."""
+    """CCL's unit normal of a movement, with the least sum (n'u)^2."""
     return least_singular_vectors(u, 1)[0]
 
 
 def given(movement):
-    """J u (N, m): what W_A acts on; u itself where no J is given."""
+    """J u (N, m), on which W_A acts; u itself without J."""
     return np.einsum("imn,in->im", movement["J"], movement["u"]) if "J" in movement else movement["u"]
 
 
@@ -135,8 +135,8 @@ def svd_constraint(movement, rank):
 
 
 def gsvd_constraint(movement, rank):
-    """W_A and W_b of A u = b: [W_A, -W_b][J u; z] = 0 with |W_A| = 1. W_b is least squares for any W_A, which leaves
-    the least singular vectors of J u without what z explains; z = 1 gives centred velocities."""
+    """W_A and W_b of A u = b: [W_A, -W_b][J u; z] = 0 with |W_A| = 1. For any W_A, W_b is the least-squares
+    solution, so W_A has the least singular vectors of the residual of J u given z; z = 1 gives centred velocities."""
     moved, z = given(movement), np.c_[np.ones(len(movement["u"])), movement.get("z", np.empty((len(movement["u"]), 0)))]
     explained = np.linalg.lstsq(z, moved, rcond=None)[0]
     normals = least_singular_vectors(moved - z @ explained, rank)
@@ -218,7 +218,7 @@ def self_test():
 
 
 def with_kinematics(rng):
-    """The angle between rows of A = W_A J found and true, where J and z change along the movement."""
+    """1 - |cosine| of the angle between the estimated and the true W_A, where J and z change along the movement."""
     jacobians, z, weights = rng.standard_normal((60, 3, 4)), rng.standard_normal((60, 2)), rng.standard_normal((1, 3))
     task, rows = z @ rng.standard_normal(2) + 0.7, (weights @ jacobians)[:, 0]
     u = rng.standard_normal((60, 4))

@@ -1,26 +1,26 @@
 #!/usr/bin/env python3
-"""How time and memory grow with the amount of data: fits beside scikit-learn's Gaussian process, alignments beside dense_numpy.py.
+"""Growth of time and memory with the amount of data: fits beside scikit-learn's Gaussian process, alignments beside dense_numpy.py.
 
 usage: growth.py [--large] [--threads 1] [--seconds 120] [--gigabytes 8] [--only fit|align] [--most N] [--picture docs/pictures/growth.svg]
 
 Needs Linux or macOS, `pip install numpy scipy scikit-learn`, and Rust: it builds the programs. Progress goes to standard error, tables in
-Markdown to standard output. Each point has a process for itself; the least of three counts where ours takes less than five seconds. A peer
-gets no more data once it has needed more than so many CPU seconds or gigabytes. About 6 minutes, twice as long on a busy machine; with
---large, ten million samples, half as long again.
+Markdown to standard output. Each point runs in a separate process; if ours takes less than five seconds, the least of three runs counts. A
+peer gets no more data once it has exceeded these CPU seconds or gigabytes. About 6 minutes, twice as long on a busy machine; with --large,
+ten million samples, half as long again.
 
 Fits: movements of 500 samples among wells in the plane, 5 % noise on velocities, in a CSV file. Ours is `policy-align fit` from start to
 end, with cross-validation and trust page. scikit-learn's GaussianProcessRegressor (squared exponential with a length for each axis, white
-noise, its own optimiser) is timed from reading the file to the end of the fit, without its imports. It learns the velocities as constraints
-have left them; its last line is of samples evenly chosen from the largest file. nUPE is the mean squared error of the unconstrained policy
-over its variance, at 500 states.
+noise, its own optimiser) is timed from reading the file to the end of the fit, without its imports. It learns the constrained
+velocities directly; its last line is a fit to samples evenly chosen from the largest file. nUPE is the mean squared error with
+respect to the unconstrained policy, over the variance of that policy, at 500 states.
 
-Alignments: movements of the toy system of 100 samples, narrow bandwidth. Time is that of the alignment alone, memory that of the process.
-Where both align the same movements, kept sets must be equal, and offsets as nearly as the rounding of the peer allows.
+Alignments: movements of 100 samples of the toy system, narrow bandwidth. Time is that of the alignment alone, memory that of the process.
+Where both align the same movements, kept sets must be equal, and offsets must agree to within the rounding of the peer.
 
-Limits: the time to read the file (the states) once at the bandwidth of memory, and the bytes of the numbers themselves: time, states and
-velocities (states). Of the peers, the arithmetic of one Cholesky factor, n^3/3 operations, and of all squared distances, 2 d (100 K)^2, at
-the rate of a matrix product, and the bytes of one covariance for each pair of samples, 8 n^2, and of one distance for each pair of a sample
-and a trajectory, 800 K^2. Rates are measured on one thread.
+Limits of a fit (of an alignment): the time to read the file (the states) once at memory bandwidth, and the bytes of the numbers themselves,
+which are time, states and velocities (states). Limits of the peers: the arithmetic of one Cholesky factor, n^3/3 operations (of all squared
+distances, 2 d (100 K)^2), at the rate of a matrix product, and the bytes of one covariance per pair of samples, 8 n^2 (of one distance per
+pair of a sample and a trajectory, 800 K^2). Rates are measured on one thread.
 """
 import argparse, json, math, os, pathlib, platform, resource, signal, subprocess, sys, tempfile, time
 
@@ -30,12 +30,12 @@ FITS = [1_000, 2_000, 4_000, 10_000, 30_000, 100_000, 300_000, 1_000_000]
 LARGE = 10_000_000
 ALIGN_SAMPLES, ALIGN_DIMENSIONS = 100, 2
 ALIGNMENTS = [100, 300, 1_000, 3_000, 10_000, 30_000, 100_000]
-# Runs that are shorter are repeated, and the least time counts.
+# Shorter runs are repeated, and the least time counts.
 SHORT, REPEATED = 5.0, 3
 
 
 class Stopped(Exception):
-    """A process failed; a peer, as a rule, because it needed more than it was given."""
+    """A process failed; in a peer the usual reason is that it exceeded its limits."""
 
 
 def main():
@@ -99,14 +99,14 @@ def build():
 
 
 def with_threads(count):
-    """For all processes from now on."""
+    """Sets the number of threads of all processes started from now on."""
     for library in ("RAYON", "OPENBLAS", "OMP", "MKL"):
         os.environ[f"{library}_NUM_THREADS"] = str(count)
 
 
 def run(words, codes=(0,)):
-    """Standard output of a process, its CPU and elapsed seconds, and the most memory that it had, in bytes. What this process has when
-    another begins counts as that one's, so it does not import NumPy."""
+    """Standard output of a process, its CPU and elapsed seconds, and its peak memory in bytes. The memory of this process when it starts
+    another counts as the other's, so this process does not import NumPy."""
     with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as errors:
         started = time.perf_counter()
         process = subprocess.Popen([str(word) for word in words], stdout=out, stderr=errors)
@@ -129,13 +129,13 @@ def run(words, codes=(0,)):
 
 
 def child(*words):
-    """A function of CHILDREN in a process for itself: its answer, and what the process needed."""
+    """Runs a function of CHILDREN in a separate process; returns its answer, and the time and memory of the process."""
     text, used = run([sys.executable, __file__, "--child", *words])
     return json.loads(text), used
 
 
 def least(measure):
-    """The answer of the first run, and the least time and memory of all; a run that is not short is not repeated."""
+    """The answer of the first run, and the least time and memory over all runs; only short runs are repeated."""
     answer, best = measure()
     for _ in range(REPEATED - 1):
         if best["elapsed"] > SHORT:
@@ -146,7 +146,7 @@ def least(measure):
 
 
 def tried(who, amount, measure):
-    """A point of a peer, or why there is none."""
+    """A point of a peer, or the reason why there is none."""
     try:
         answer, used = measure()
         used.update({name: answer[name] for name in ("cpu", "elapsed", "error") if name in answer})
@@ -166,7 +166,7 @@ def measure_fits(counts, programs, folder, options):
         say(f"fit, {n:,} samples")
         run([programs / "noisy_file", n // SAMPLES, SAMPLES, recording, truth])
         fit = [programs / "policy-align", "fit", recording, "-o", model, "--json"]
-        # 1 says "do not use": that is an answer too.
+        # Exit code 1 means "do not use", which is a valid answer.
         text, ours = least(lambda: run(fit, codes=(0, 1)))
         found = json.loads(text)
         run([programs / "policy-align", "predict", model, truth, "-o", predicted])
@@ -249,14 +249,14 @@ def measure_alignments(counts, programs, folder, options):
 
 
 def aligned(answer):
-    """The time of the alignment alone, as the program has measured it."""
+    """The time of the alignment alone, as measured by the program."""
     text, used = answer
     found = json.loads(text)
     return text, {"cpu": found["cpu"], "elapsed": found["wall"], "memory": found["peak_megabytes"] * 2 ** 20 or used["memory"]}
 
 
 def compare(k, ours, theirs):
-    """The largest difference of offsets; as compare_align.py does."""
+    """The largest difference of offsets; exits if the results differ, as in compare_align.py."""
     difference = max((abs(a - b) for a, b in zip(ours["offsets"], theirs["offsets"])), default=0.0)
     if ours["kept"] != theirs["kept"]:
         sys.exit(f"{k} movements: other trajectories are kept: {len(ours['kept'])}, and {len(theirs['kept'])} by NumPy")
@@ -302,7 +302,7 @@ def with_peers(points):
 
 
 def beside(point, peer, limits, errors):
-    """A line of a peer, as far as it came."""
+    """A line of the table for a peer, incomplete if the peer was stopped."""
     if "stopped" in peer:
         return row(amount(point["n"]), peer["stopped"], "", limits[0], "", limits[1], *[""] * len(errors))
     times = f"{peer['cpu'] / point['ours']['cpu']:.2g} ×" if peer["cpu"] < 100 * point["ours"]["cpu"] else f"{peer['cpu'] / point['ours']['cpu']:.0f} ×"
@@ -310,7 +310,7 @@ def beside(point, peer, limits, errors):
 
 
 def small(value):
-    """Two digits, plainly or as a power of ten."""
+    """Two digits, in plain or scientific notation."""
     text = f"{value:.1e}"
     if 1e-2 <= value < 1e3:
         return f"{float(text):g}"
@@ -361,7 +361,7 @@ def panels_of_alignments(points, rates):
 
 
 def panels(points, words, limits):
-    """Time and memory. A limit is a function of the amount, and its name."""
+    """Panels of time and memory. A limit is a function of the amount, with its name."""
     x_label, title, peer = words
     x = [10.0 ** math.floor(math.log10(points[0]["n"])), 1.3 * points[-1]["n"]]
     drawn = []
@@ -372,12 +372,12 @@ def panels(points, words, limits):
         ends = lambda of: [[n, factor * of(n)] for n in (x[0], points[-1]["n"])]
         values = [value for _, value in ours + theirs + ends(limit)]
         y = [10.0 ** math.floor(math.log10(min(values))), 10.0 ** math.ceil(math.log10(2 * max(values)))]
-        # The name of the peer's limit stands to the right of it, where it is steep and high.
+        # The name of the peer's limit is to the right of its line, where the line is high.
         steep = ends(dense)
         slope = math.log(steep[1][1] / steep[0][1]) / math.log(steep[1][0] / steep[0][0])
         high = 10 ** (math.log10(y[0]) + 0.86 * math.log10(y[1] / y[0]))
         along = x[0] * (high / steep[0][1]) ** (1 / slope)
-        beside = along * (x[1] / x[0]) ** ((3.4 * len(dense_name) + 28) / 365)  # half of its letters, over the width in pixels
+        beside = along * (x[1] / x[0]) ** ((3.4 * len(dense_name) + 28) / 365)  # half the width of its letters, over that of the panel in pixels
         notes = [{"at": [beside, high], "text": dense_name}]
         notes += [{"at": theirs[-1], "text": peer}] if theirs else []
         drawn.append({
@@ -387,7 +387,7 @@ def panels(points, words, limits):
     return drawn
 
 
-# What runs in a process of its own
+# Functions that run in separate processes
 
 def child_versions():
     import numpy, scipy, sklearn
@@ -395,7 +395,7 @@ def child_versions():
 
 
 def child_rates():
-    """Operations a CPU second of a matrix product, and bytes a second of reading memory; the best of ten."""
+    """Operations per CPU second of a matrix product, and bytes per CPU second of reading memory; the best of ten."""
     import numpy as np
     a = np.random.default_rng(0).standard_normal((1500, 1500))
     numbers = np.ones(2 ** 25)
@@ -410,7 +410,7 @@ def timed(of):
 
 
 def child_fit(recording, truth, count, *most):
-    """Of so many samples of the recording, evenly chosen."""
+    """Fits the peer to this number of samples of the recording, evenly chosen."""
     import numpy as np
     from sklearn.gaussian_process import GaussianProcessRegressor
     from sklearn.gaussian_process.kernels import RBF, ConstantKernel, WhiteKernel

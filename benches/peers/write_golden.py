@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Small alignments as golden files for crates/align/tests/golden.rs: what dense_numpy.py finds, and the offsets in 80-bit arithmetic.
+"""Small alignments as golden files for crates/align/tests/golden.rs: results of dense_numpy.py, and offsets in 80-bit arithmetic.
 
 usage: write_golden.py DIR
 """
@@ -20,12 +20,12 @@ CASES = [
     ("medium_7d", 6, 7, 9, 7, "medium"),
     ("fixed_2d", 7, 10, 12, 2, 0.01),
 ]
-# Weakly connected: of seeds from 100 on, the first two whose kept group has lambda_2 below 1e-5 and loses somebody.
+# Weakly connected: the first two seeds from 100 on whose kept group has lambda_2 below 1e-5 and lacks a trajectory.
 WEAK = 2
 
 
 def movements(seed, trajectories, samples, dimensions):
-    """Six decimals are enough, and every digit is then in the file. In one dimension nothing is constrained."""
+    """States rounded to six decimals, so that the file contains every digit. In one dimension nothing is constrained."""
     rng = np.random.default_rng(seed)
     if dimensions == 1:
         states = rng.uniform(-2, 2, (trajectories, 1, 1)) * 0.9 ** np.arange(samples)[None, :, None]

@@ -1,4 +1,4 @@
-"""Every setting on every recording, on as many machines as a Dask scheduler has: python sweep.py ADDRESS FOLDER FILE..."""
+"""Fits every setting to every recording, on all machines of a Dask scheduler: python sweep.py ADDRESS FOLDER FILE..."""
 
 import sys
 from pathlib import Path

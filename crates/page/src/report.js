@@ -1,7 +1,7 @@
-// The report works without this; it adds where one is in the contents, which it folds in a narrow window, and enlarged figures.
+// The report works without this. It marks the current part in the contents, folds them in a narrow window, enlarges figures.
 "use strict";
 
-// Marks the part that is being read in the contents.
+// Marks the part being read in the contents.
 const links = new Map([...document.querySelectorAll("nav a")].map((a) => [a.hash.slice(1), a]));
 const parts = [...links.keys()].map((id) => document.getElementById(id));
 function mark() {
@@ -32,7 +32,7 @@ for (const button of document.querySelectorAll(".enlarge")) {
   button.addEventListener("click", () => {
     const figure = button.closest("figure");
     const picture = button.querySelector("img").cloneNode();
-    // How large it may grow is up to the window, how small to what can be read.
+    // The style sheet computes the size: largest by the window, smallest by legibility.
     picture.style.setProperty("--width", picture.getAttribute("width"));
     picture.style.setProperty("--height", picture.getAttribute("height"));
     frame.replaceChildren(picture);
@@ -41,7 +41,7 @@ for (const button of document.querySelectorAll(".enlarge")) {
     enlarged.setAttribute("aria-label", figure.getAttribute("aria-label"));
     opener = button;
     enlarged.showModal();
-    // Where another figure was left is not where this one begins.
+    // Resets the scroll position of the previous figure.
     for (const scrolled of [enlarged, frame, caption]) scrolled.scrollTo({ left: 0, top: 0, behavior: "instant" });
   });
 }

@@ -1,4 +1,4 @@
-"""What the door costs: Python's times beside those of Rust alone, in the same minute on the same machine.
+"""The overhead of the Python interface: times beside those of Rust alone, in the same minute on the same machine.
 
     cargo build -p policy-align --example speed        # with --release, if the package is built so
     python crates/policy-align-py/benches/speed.py target/debug/examples/speed
@@ -37,7 +37,7 @@ def rust(program: str) -> dict[str, float]:
 
 
 def at_once(work: Callable[[], object], threads: int) -> float:
-    """Seconds of as many threads, that all do the same."""
+    """Seconds for this number of threads to do the same work each."""
     running = [threading.Thread(target=work) for _ in range(threads)]
     begin = time.perf_counter()
     for thread in running:
@@ -51,7 +51,7 @@ def main() -> None:
     alone = rust(sys.argv[1])
     toy = Demonstrations.read(TOY)
     positions, velocities = list(toy), toy.velocities
-    # The sines that the Rust program asks at, so that both meet the same states.
+    # The same states as in the Rust program.
     states = np.sin(np.arange(100_000)[:, None] * (0.7 * np.arange(1, 3)))
     learner = SlopeGp(max_rows=100)
     fitting = least(lambda: learner.fit(positions, dt=0.05, velocities=velocities))

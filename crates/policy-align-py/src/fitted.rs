@@ -32,7 +32,7 @@ pub(crate) struct Fitted {
 
 #[pymethods]
 impl Fitted {
-    /// Learns, from digests of further files as well; `made_at` is the time in UTC, ISO 8601.
+    /// Learns from recordings, and from digests of further files. `made_at`: the time in UTC, ISO 8601.
     #[staticmethod]
     fn fit(
         py: Python<'_>,
@@ -62,7 +62,7 @@ impl Fitted {
         Ok(Fitted { model: Arc::new(model?) })
     }
 
-    /// Of a model file's bytes.
+    /// Reads a model from a model file's bytes.
     #[staticmethod]
     fn from_json(py: Python<'_>, text: &[u8], place: &str) -> PyResult<Self> {
         let model = py.detach(|| Model::from_json(text)).map_err(|error| Refusal::model(&error, place))?;
@@ -82,12 +82,12 @@ impl Fitted {
         Ok(Fitted { model: Arc::new(model) })
     }
 
-    /// Writes a model file, wholly or not at all.
+    /// Writes a model file, completely or not at all.
     fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
         py.detach(|| self.model.save(&path)).map_err(|error| file_or(error, &path))
     }
 
-    /// Writes the folder that `LeRobot` reads as a policy; it is made if it is not there.
+    /// Writes the folder that `LeRobot` reads as a policy; creates it if it does not exist.
     fn save_lerobot(&self, py: Python<'_>, folder: PathBuf) -> PyResult<()> {
         let files = to_lerobot(&self.model);
         let place = folder.display().to_string();
@@ -100,12 +100,12 @@ impl Fitted {
         .map_err(|error| file_or(ModelError::File(error), &folder))
     }
 
-    /// Everything in the model but the policy itself, as JSON.
+    /// Everything in the model except the policy itself, as JSON.
     fn about(&self) -> String {
         model_document::about(&self.model)
     }
 
-    /// The name of what has learnt.
+    /// The name of the learner.
     #[getter]
     fn learner(&self) -> &'static str {
         model_document::learner(&self.model.learnt)
@@ -123,7 +123,7 @@ impl Fitted {
         self.model.open_context().iter().map(|channel| channel.name.clone()).collect()
     }
 
-    /// The same in one context.
+    /// The same policy in one context.
     fn in_context(&self, values: Vec<(String, f64)>) -> PyResult<Self> {
         let hint = || match self.model.context_names() {
             names if names.is_empty() => "no context".to_owned(),
@@ -149,8 +149,8 @@ impl Fitted {
         Ok(array(py, actions))
     }
 
-    /// Standard deviation of every component of π at each state, (N, n), none if the learner does not know it; and whether the state is
-    /// supported enough to act on, (N).
+    /// Standard deviation of every component of π at each state, (N, n), `None` if the learner does not estimate it; and whether the
+    /// support of the state is enough to act on, (N).
     #[pyo3(name = "certainty")]
     fn deviations_and_supports<'py>(
         &self,
@@ -163,7 +163,7 @@ impl Fitted {
         Ok((deviations.map(|deviations| array(py, deviations)), supported))
     }
 
-    /// φ at each state, (N); none if the policy has no potential.
+    /// φ at each state, (N); `None` if the policy has no potential.
     fn potential<'py>(
         &self,
         py: Python<'py>,
@@ -181,12 +181,12 @@ impl Fitted {
         Ok(Some(PyArray1::from_vec(py, values)))
     }
 
-    /// How much the demonstrations support each state, from 0 to 1, (N).
+    /// Support of each state by the demonstrations, from 0 to 1, (N).
     fn support<'py>(&self, py: Python<'py>, states: PyReadonlyArray2<'py, f64>) -> PyResult<Bound<'py, PyArray1<f64>>> {
         Ok(PyArray1::from_vec(py, self.certainty(py, &states)?.support))
     }
 
-    /// Whether that is enough to act on, (N).
+    /// Whether the support of each state is enough to act on, (N).
     fn supports<'py>(
         &self,
         py: Python<'py>,
@@ -198,7 +198,7 @@ impl Fitted {
         Ok(PyArray1::from_vec(py, supported))
     }
 
-    /// Evaluates the policy on movements; as JSON.
+    /// Evaluates the policy on movements; returns JSON.
     fn evaluate(&self, py: Python<'_>, recordings: &Recordings, preparing: Preparing) -> PyResult<String> {
         let options = self.prepared_alike(preparing)?;
         let (inner, model) = (Arc::clone(&recordings.inner), Arc::clone(&self.model));
@@ -212,7 +212,7 @@ impl Fitted {
         Ok(serde_json::json!(judged?).to_string())
     }
 
-    /// The constraints on movements; as JSON. `robot` is a URDF, `links` those of its links that may be constrained.
+    /// The constraints on movements, as JSON. `robot`: a URDF; `links`: its links that may be constrained.
     fn constraints(
         &self,
         py: Python<'_>,

@@ -21,8 +21,8 @@ pub(crate) type Given = (PathBuf, bool, Option<String>);
 /// The source of a digest: its index, the file or piece, its size in bytes, and its largest number of rows.
 pub(crate) type Further = (usize, Given, u64, usize);
 
-/// Which of these files, and which pieces of large ones, are read at once to learn like this, and the others. `at_once` and `reading` are the
-/// program's, the latter as JSON.
+/// Divides files, and pieces of large ones, into those that are read at once for a fit with the options `learning`, and the others.
+/// `at_once` and `reading` are the program's options, the latter as JSON.
 #[pyfunction]
 pub(crate) fn divide(
     py: Python<'_>,
@@ -68,7 +68,7 @@ pub(crate) fn piece((path, named_by_file, span): Given) -> Result<Piece, Refusal
     Ok(Piece { path, named_by_file, span: span.map_err(|error| damaged(&error.to_string()))? })
 }
 
-/// A part of a fit that has one digest, as the program writes it; the digester is JSON.
+/// A part of a fit with the digest of one file or piece, in the program's format; the digester is JSON.
 #[pyfunction]
 pub(crate) fn digest<'py>(py: Python<'py>, further: Further, digester: &str) -> PyResult<Bound<'py, PyBytes>> {
     let digester: Digester = serde_json::from_str(digester).map_err(|error| damaged(&error.to_string()))?;
@@ -99,7 +99,7 @@ pub(crate) fn digests((pieces, parts, digester): (Vec<Further>, Vec<Vec<u8>>, St
     parts.and_then(|parts| Part::merged(parts, &pieces, &digester)).map_err(|error| damaged(&error.to_string()))
 }
 
-/// Digests that are kept as they are made, so that a fit that was interrupted goes on.
+/// A file that keeps digests as they are made, so that an interrupted fit can continue.
 #[pyclass(frozen, module = "policy_align._native")]
 pub(crate) struct Unfinished {
     pieces: Vec<FurtherPiece>,
@@ -109,7 +109,7 @@ pub(crate) struct Unfinished {
 
 #[pymethods]
 impl Unfinished {
-    /// Opens or begins such a file; the digester is JSON.
+    /// Opens or creates such a file; the digester is JSON.
     #[staticmethod]
     fn open(path: PathBuf, pieces: Vec<Further>, digester: &str) -> PyResult<Self> {
         let digester: Digester = serde_json::from_str(digester).map_err(|error| damaged(&error.to_string()))?;
@@ -121,7 +121,7 @@ impl Unfinished {
         Ok(Unfinished { pieces, kept: Mutex::new(Some(kept)) })
     }
 
-    /// A part of all digests that an earlier run kept, as [`digest`] gives one, and what is not in it.
+    /// A part with all digests that an earlier run kept, in the format of [`digest`], and the pieces without a digest.
     fn found<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyBytes>, Vec<Further>)> {
         let kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
         let Some(kept) = &*kept else { return Err(damaged("closed already").into()) };
@@ -130,7 +130,7 @@ impl Unfinished {
         Ok((PyBytes::new(py, &bytes), others.into_iter().map(tuple).collect()))
     }
 
-    /// Keeps a part that [`digest`] gave.
+    /// Keeps a part from [`digest`].
     fn keep(&self, part: &[u8]) -> PyResult<()> {
         let part = Part::of_json(part).map_err(|error| damaged(&error.to_string()))?;
         if let Some(kept) = &*self.kept.lock().unwrap_or_else(PoisonError::into_inner) {
@@ -139,12 +139,12 @@ impl Unfinished {
         Ok(())
     }
 
-    /// Lets another process have the file.
+    /// Closes the file, so that another process can open it.
     fn close(&self) {
         self.kept.lock().unwrap_or_else(PoisonError::into_inner).take();
     }
 
-    /// Removes such a file, which nothing has open.
+    /// Removes such a file, which must not be open.
     #[staticmethod]
     fn remove(path: PathBuf) {
         policy_align::Unfinished::remove(&path);

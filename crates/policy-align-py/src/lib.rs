@@ -19,7 +19,7 @@ mod rolling;
 
 use pyo3::prelude::*;
 
-/// What `policy_align` is made of.
+/// The native half of `policy_align`.
 #[pymodule]
 mod _native {
     use pyo3::prelude::*;

@@ -19,7 +19,7 @@ use crate::options::Preparing;
 use crate::pool;
 use crate::refusal::Refusal;
 
-/// Movements, as they were read or given.
+/// Movements as read from files or given as arrays.
 #[pyclass(frozen, module = "policy_align._native")]
 pub(crate) struct Recordings {
     pub(crate) inner: Arc<Recorded>,
@@ -67,7 +67,7 @@ impl Recordings {
     }
 
     /// Movements in memory: positions (N, n) and velocities of the same shape, each C-ordered; seconds between samples,
-    /// or the stamps of each movement, (N); and the name of the constraint at each sample, (N).
+    /// or the time stamps of each movement, (N); and the name of the constraint at each sample, (N).
     #[staticmethod]
     fn of(
         positions: Vec<PyReadonlyArray2<'_, f64>>,
@@ -123,7 +123,7 @@ impl Recordings {
         names_of(&self.inner.recordings)
     }
 
-    /// Labels of their constraints, one a sample.
+    /// Labels of the movements' constraints, one per sample.
     #[getter]
     fn constraints(&self) -> Vec<Option<Vec<String>>> {
         let of = |episode: &Episode| {
@@ -139,14 +139,14 @@ impl Recordings {
         self.inner.recordings.state.iter().map(|channel| (channel.name.clone(), channel.unit.clone())).collect()
     }
 
-    /// What was found while reading.
+    /// Findings from reading.
     #[getter]
     fn notes(&self) -> Vec<String> {
         let text = |finding: &Finding| in_python(&format!("{}: {}", finding.what, finding.next));
         self.inner.recordings.findings.iter().map(text).collect()
     }
 
-    /// Where they come from: files and findings as JSON, the name of all that in messages, and the channels of the context as JSON.
+    /// Origin of the movements: files and findings as JSON, their name in messages, and the channels of the context as JSON.
     #[getter]
     fn origin(&self) -> (String, String, String, String) {
         let Recorded { files, recordings, place, context } = &*self.inner;
@@ -154,7 +154,7 @@ impl Recordings {
         (files.to_string(), findings.to_string(), place.clone(), context.to_string())
     }
 
-    /// The same movements as if they came from elsewhere.
+    /// The same movements with another origin.
     fn with_origin(&self, origin: (String, String, String, String)) -> PyResult<Self> {
         let (files, findings, place, context) = origin;
         let wrong = |error: serde_json::Error| PyValueError::new_err(error.to_string());
@@ -165,13 +165,13 @@ impl Recordings {
         Ok(Recordings { inner: Arc::new(Recorded { recordings, files, place, context }) })
     }
 
-    /// The usual time between samples, in seconds.
+    /// The typical time between samples, in seconds.
     #[getter]
     fn time_step(&self) -> f64 {
         self.inner.recordings.time_step()
     }
 
-    /// What makes digests of files like these, which were read with these options, as JSON.
+    /// The digester for further files like these, which were read with these options, as JSON.
     fn digester(&self, py: Python<'_>, preparing: Preparing, options: &str, trim_still: bool) -> PyResult<String> {
         let (inner, preparing) = (Arc::clone(&self.inner), preparing.options(&self.inner.context)?);
         let reading = reading_of(options)?;
@@ -186,7 +186,7 @@ impl Recordings {
         Ok(text?)
     }
 
-    /// What would be learnt from, and what gives reason for doubt, as JSON.
+    /// The data for learning, and reasons for doubt, as JSON.
     fn check(&self, py: Python<'_>, preparing: Preparing) -> PyResult<String> {
         let (inner, options) = (Arc::clone(&self.inner), preparing.options(&self.inner.context)?);
         let prepared = interruptible(py, move |_: &_| {

@@ -21,7 +21,7 @@ pub(crate) enum Constraint<'py> {
     Function(Option<Py<PyAny>>),
 }
 
-/// A policy that was followed.
+/// The path of a roll-out.
 #[pyclass(frozen, module = "policy_align._native")]
 pub(crate) struct Path {
     path: policy_align::Path,
@@ -35,19 +35,19 @@ impl Path {
         PyArray1::from_slice(py, &self.path.times)
     }
 
-    /// (N, n).
+    /// States, (N, n).
     #[getter]
     fn states<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
         array(py, self.path.states.clone())
     }
 
-    /// What the constraint left of the action, (N, n).
+    /// The part of the action that the constraint allows, (N, n).
     #[getter]
     fn velocities<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
         array(py, self.path.velocities.clone())
     }
 
-    /// Why it ended.
+    /// The reason for the end.
     #[getter]
     fn stop(&self) -> String {
         match &self.path.stop {
@@ -58,7 +58,7 @@ impl Path {
         }
     }
 
-    /// By how much a constraint was broken at most; None if there was none.
+    /// The largest violation of a constraint; `None` without constraints.
     #[getter]
     fn broken_by(&self) -> Option<f64> {
         self.path.broken_by.map(|(by, _)| by)

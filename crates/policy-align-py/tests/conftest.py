@@ -1,4 +1,4 @@
-"""Movements that tests learn from."""
+"""Movements for the tests."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ DT = 0.05
 
 
 def on_rails(count: int = 12, samples: int = 40, dim: int = 2) -> tuple[list[np.ndarray], list[np.ndarray]]:
-    """Down φ = ‖x‖²/2, every time on another straight rail: positions and velocities, (N, n) each."""
+    """Movements down φ = ‖x‖²/2, each on another straight rail: positions and velocities, (N, n) each."""
     numbers = np.random.default_rng(7)
     seconds = DT * np.arange(samples)[:, None]
     positions, velocities = [], []
@@ -31,7 +31,7 @@ def on_rails(count: int = 12, samples: int = 40, dim: int = 2) -> tuple[list[np.
 
 
 def without_time(text: str) -> str:
-    """A model file but for what differs every time; the checksum is also of the time."""
+    """A model file without the time and the checksum, which covers the time: they differ between runs."""
     text, times = re.subn(r'"time":"[^"]*"', '"time":""', text)
     text, sums = re.subn(r'"checksum":"[0-9a-f]{64}"', '"checksum":""', text)
     assert (times, sums) == (1, 1)

@@ -1,4 +1,4 @@
-"""No file, however broken, is more than an error."""
+"""Broken files cause errors and nothing worse."""
 
 from __future__ import annotations
 
@@ -15,19 +15,19 @@ from conftest import DT, ROOT, on_rails
 from policy_align import Demonstrations, PolicyAlignError, SlopeGp, load
 
 SAMPLES = ROOT / "crates/demo-io/tests/samples"
-#: Reference files of other libraries, where there are any.
+#: Reference files of other libraries, which may be missing.
 VECTORS = Path(os.environ.get("CONFORMANCE_VECTORS", ROOT.parent / "shared/vectors")) / "files"
 
 
 def outcome(path: Path, **options: object) -> Demonstrations | PolicyAlignError:
-    """Read and looked at, or refused; a panic or anything else fails."""
+    """The recordings, read and checked, or the error; a panic or another exception fails the test."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         try:
             read = Demonstrations.read(path, **options)
             read.check()
         except PolicyAlignError as error:
-            # Flags are arguments here, but for those of other programs.
+            # Flags are translated to arguments, except those of other programs.
             ours = (error.hint or "").split("rosbags-convert")[0].replace("--repo-type", "")
             assert "--" not in ours, error
             return error
@@ -85,7 +85,7 @@ def test_damaged_models_are_errors(tmp_path: Path, slope: SlopeGp) -> None:
 def test_reference_files_say_what_is_expected() -> None:
     cases = json.loads((VECTORS / "expected.json").read_text())["cases"]
     for case in cases:
-        # Behind #, what is read of a file.
+        # The part of a file to read follows #.
         found = outcome(VECTORS / case["path"].split("#")[0], **options(case.get("args", "")))
         if case["kind"] == "refuse":
             assert isinstance(found, PolicyAlignError), case
@@ -100,13 +100,13 @@ def test_reference_files_say_what_is_expected() -> None:
                 left_out = (f"episode {name} {why}" for name, why in check.left_out)
                 said = "\n".join([said, *map(str, check.findings), *left_out])
             assert len(names) == case.get("expect", {}).get("episodes", len(names))
-        # Flags have other names here.
+        # Flags have other names in Python.
         assert all(words in said for words in case.get("says", []) if "--" not in words), f"{case}\n{said}"
     assert len(cases) > 40
 
 
 def options(arguments: str) -> dict[str, object]:
-    """The program's `--dt 0.05 --sort` as arguments of Python."""
+    """Converts flags of the program, such as `--dt 0.05 --sort`, to arguments of Python."""
     found: dict[str, object] = {}
     words = shlex.split(arguments)
     for at, flag in enumerate(words):

@@ -1,4 +1,4 @@
-"""Some movements of several, and scikit-learn's divisions of them."""
+"""Selection of movements, and scikit-learn's splits of them."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from policy_align import Demonstrations, PolicyAlignError, SlopeGp
 
 
 def same(one: Demonstrations, other: Demonstrations, places: list[int]) -> None:
-    """Whether ``one`` is the movements of ``other`` at ``places``, with all that belongs to them."""
+    """Checks that ``one`` consists of the movements of ``other`` at ``places``, with all their attributes."""
     assert one.names == [other.names[k] for k in places] and one.channels == other.channels
     for found, of in ((one.trajectories, other.trajectories), (one.times, other.times)):
         assert len(found) == len(places)

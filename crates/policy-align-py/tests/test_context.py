@@ -1,4 +1,4 @@
-"""A goal that differs between movements."""
+"""Goals that differ between movements."""
 
 import pathlib
 import pickle

@@ -1,4 +1,4 @@
-"""Recordings, of files or of memory."""
+"""Recordings from files or memory."""
 
 from __future__ import annotations
 

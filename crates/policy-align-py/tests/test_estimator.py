@@ -1,4 +1,4 @@
-"""scikit-learn's manners: what its tools ask of an estimator, and its own habits by hand."""
+"""The estimator interface: scikit-learn's tools, and its conventions tested by hand."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The files that come with the package."""
+"""The example files in the package."""
 
 from __future__ import annotations
 

@@ -12,7 +12,7 @@ pd = pytest.importorskip("pandas")
 
 
 def frame_of_toy():
-    """Every number to its last bit, whatever this version of pandas does by default."""
+    """Parses every number exactly, to the last bit, whatever the default of this version of pandas."""
     frame = pd.read_csv(TOY, dtype=str)
     return frame.astype({name: int if name == "episode" else float for name in frame.columns})
 

@@ -1,4 +1,4 @@
-"""Whatever an array looks like: the same bits as of a C-ordered copy, or an error that says why not."""
+"""Arrays of any layout and type yield the same bits as a C-ordered copy, or an error with the reason."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ SAME = {
     "big endian": lambda x: x.astype(">f8"),
     "unaligned": lambda x: _unaligned(x),
 }
-#: Those that hold fewer digits, and what they hold.
+#: Types with fewer digits.
 ROUNDED = {"float32": np.float32, "float16": np.float16, "int64": np.int64, "uint8": np.uint8}
 
 

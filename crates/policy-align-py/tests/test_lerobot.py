@@ -1,4 +1,4 @@
-"""The plug-in of LeRobot: what the program exports acts there as the model does, to the bit."""
+"""The plug-in for LeRobot: an exported policy acts like the model, bit for bit."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ PLUGIN = ROOT / "crates/policy-align-py/lerobot"
 GOALS = ROOT / "docs/examples/goals.csv"
 
 sys.path.append(str(PLUGIN))
-# Folders are read, never the hub.
+# Reads folders only, never the hub.
 os.environ["HF_HUB_OFFLINE"] = "1"
 with warnings.catch_warnings():
     warnings.simplefilter("ignore")
@@ -67,7 +67,7 @@ def folder(model: Path, export: Export, tmp_path: Path) -> Path:
 
 @pytest.fixture(scope="module")
 def states() -> np.ndarray:
-    """Within the data and beyond."""
+    """States inside and outside the data."""
     return np.random.default_rng(3).uniform(-4, 4, (300, 2))
 
 
@@ -76,7 +76,7 @@ def observed(states: np.ndarray, dtype: torch.dtype = torch.float64) -> dict[str
 
 
 def configured(folder: Path, **settings: Any) -> AlignPolicy:
-    """With velocities as actions, which are the model's own, unless ``settings`` say otherwise."""
+    """Reads a policy whose actions are velocities, like the model's, unless ``settings`` differ."""
     settings = {"action": "velocity", **settings}
     config = PreTrainedConfig.from_pretrained(folder, cli_overrides=[f"--{key}={value}" for key, value in settings.items()])
     return AlignPolicy.from_pretrained(folder, config=config)
@@ -108,7 +108,7 @@ def test_the_model_file_travels_through_save_pretrained(
     again = AlignPolicy.from_pretrained(tmp_path / "again")
     assert again.model.numpy().tobytes() == model.read_bytes()
     assert torch.equal(again.select_action(observed(states)), policy.select_action(observed(states)))
-    # A state that another policy is given.
+    # Another policy receives the state dictionary.
     third = AlignPolicy(policy.config)
     third.load_state_dict(policy.state_dict())
     assert torch.equal(third.select_action(observed(states)), policy.select_action(observed(states)))
@@ -152,7 +152,7 @@ def test_a_chunk_follows_the_policy(folder: Path, slope: SlopeGp) -> None:
         action = slope.predict(state)
         assert np.array_equal(chunk[:, k], action)
         state = state + 0.1 * action
-    # The next action is of the next observation.
+    # The next action belongs to the next observation.
     assert np.array_equal(policy.select_action(observed(state)).numpy(), slope.predict(state))
 
 
@@ -240,7 +240,7 @@ def test_doubts_are_warned_of(export: Export, tmp_path: Path) -> None:
 
 @pytest.mark.filterwarnings("ignore")
 def test_from_a_data_set_of_lerobot_to_its_policy(tmp_path: Path) -> None:
-    """Positions on rails, every time another, at 10 Hz as LeRobot writes them: π = goal − x is learnt and runs there."""
+    """Positions on varying rails at 10 Hz, in a data set written by LeRobot: the learnt π = goal − x runs in LeRobot."""
     from lerobot.datasets.lerobot_dataset import LeRobotDataset
 
     feature = {"dtype": "float32", "shape": (2,), "names": ["x", "y"]}
@@ -317,15 +317,15 @@ def test_lerobots_own_evaluation_runs_it(folder: Path) -> None:
     envs = gymnasium.vector.SyncVectorEnv([Bowl] * 3, autoreset_mode=gymnasium.vector.AutoresetMode.SAME_STEP)
     run = rollout(envs, policy, same, same, before, after, seeds=[1, 2, 3])
     assert run["success"].any(dim=1).all()
-    # Those made anew do the same.
+    # Newly created processors have the same steps.
     made, _ = make_pre_post_processors(config)
     assert [type(step) for step in made.steps] == [type(step) for step in before.steps]
 
 
 def test_lerobot_finds_the_plug_in(tmp_path: Path) -> None:
-    """By the name of the installed distribution."""
+    """LeRobot finds it by the name of the installed distribution."""
     pytest.importorskip("setuptools")
-    # The build leaves its traces in a copy.
+    # Builds in a copy, because the build writes files.
     shutil.copytree(PLUGIN, tmp_path / "source", ignore=shutil.ignore_patterns("__pycache__"))
     install = "-m pip install --quiet --no-deps --no-build-isolation --no-index --no-compile --target".split()
     subprocess.run([sys.executable, *install, tmp_path / "site", tmp_path / "source"], check=True, capture_output=True)

@@ -1,4 +1,4 @@
-"""Engines of others share the work out; the result is the single process's, bit for bit."""
+"""External engines distribute the work; the result equals that of a single process, bit for bit."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ SWEEP = ROOT / "docs/examples/sweep.py"
 
 
 def rails_file(folder: Path, count: int, first: int = 0, samples: int = 10) -> Path:
-    """A recording of movements from the first to the last of so many."""
+    """Writes a recording of the movements from ``first`` to the last of ``count``."""
     lines = ["episode,t,x,y,vx,vy"]
     for k, (x, u) in enumerate(zip(*on_rails(count, samples), strict=True)):
         lines += [] if k < first else [",".join(map(repr, [k, DT * i, *x[i].tolist(), *u[i].tolist()])) for i in range(len(x))]
@@ -38,7 +38,7 @@ def rails_file(folder: Path, count: int, first: int = 0, samples: int = 10) -> P
 
 @contextmanager
 def running(*command: str) -> Iterator[subprocess.Popen[str]]:
-    """A process of its own, which ends with the test."""
+    """A separate process, which ends with the test."""
     command = (sys.executable, *command)
     environment = {**os.environ, "DASK_DISTRIBUTED__COMM__TIMEOUTS__CONNECT": "3s"}
     process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, env=environment)
@@ -50,7 +50,7 @@ def running(*command: str) -> Iterator[subprocess.Popen[str]]:
 
 
 def until(true: Callable[[], object], seconds: float = 60.0) -> None:
-    """Waits for what must become true."""
+    """Waits until a condition becomes true."""
     end = time.monotonic() + seconds
     while not true():
         assert time.monotonic() < end, "it never came true"
@@ -59,7 +59,7 @@ def until(true: Callable[[], object], seconds: float = 60.0) -> None:
 
 @contextmanager
 def cluster(folder: Path) -> Iterator[tuple[Any, dict[str, subprocess.Popen[str]], dict[str, str]]]:
-    """A client of two workers, their processes and their addresses by name."""
+    """A client with two workers, and the processes and addresses of the workers by name."""
     distributed = pytest.importorskip("distributed")
     address_file = folder / "scheduler.json"
     common = ("--no-dashboard", "--scheduler-file", str(address_file))
@@ -83,7 +83,7 @@ def test_dask_outlives_a_killed_worker(tmp_path: Path) -> None:
         address = client.scheduler.address
         sweep = stack.enter_context(running(str(SWEEP), address, str(tmp_path), *map(str, [*files, tmp_path / "damaged.csv"])))
         assert sweep.stdout is not None and sweep.stdout.readline().startswith("rails"), "nothing was learnt"
-        # It works, or has what it worked on: small tasks may be done before anyone looks.
+        # It is computing, or holds results: small tasks may be complete before this check.
         until(lambda: client.processing()[addresses["second"]] or client.has_what()[addresses["second"]])
         workers["second"].send_signal(signal.SIGKILL)
         assert sweep.wait(300) == 1, "the damaged file was not missed"
@@ -114,7 +114,7 @@ def test_a_search_in_processes_finds_the_same() -> None:
 
 
 class Dying:
-    """A client whose first task takes its worker with it, once."""
+    """A client whose first task kills its worker, once."""
 
     def __init__(self, client: Any, marker: Path) -> None:
         self.client, self.marker = client, marker
@@ -122,9 +122,9 @@ class Dying:
     def map(self, function: Callable[[Any], bytes], items: list[Any]) -> Any:
         marker = str(self.marker)
 
-        def die_once(item: Any) -> bytes:  # within, so that workers need no module of tests
+        def die_once(item: Any) -> bytes:  # nested, so that workers need no test module
             try:
-                os.close(os.open(marker, os.O_CREAT | os.O_EXCL))  # one of two that come at once
+                os.close(os.open(marker, os.O_CREAT | os.O_EXCL))  # only one of two simultaneous tasks succeeds
                 os.kill(os.getpid(), signal.SIGKILL)
             except FileExistsError:
                 pass
@@ -228,7 +228,7 @@ def test_an_interrupted_fit_goes_on(tmp_path: Path) -> None:
 
         assert model(learner.fit_files(*files, map=counted, unfinished=unfinished, **options)) == alone
     assert counts == [counts[0], counts[0] - 2, counts[0] - 4] and not unfinished.exists()
-    # A file that is something else is left alone.
+    # A file with other contents stays unchanged.
     unfinished.write_text("notes")
     with pytest.raises(PolicyAlignError, match="something else"):
         learner.fit_files(*files, unfinished=unfinished, **options)

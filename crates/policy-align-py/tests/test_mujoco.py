@@ -1,4 +1,4 @@
-"""The MuJoCo example, reduced: what is learnt from a hand in planes reaches the goal as the free teacher does."""
+"""The MuJoCo example, reduced: a policy learnt from a hand in planes reaches the goal like the free teacher."""
 
 from __future__ import annotations
 
@@ -41,10 +41,10 @@ def test_the_arm_goes_where_it_is_placed() -> None:
 
 def test_every_demonstration_is_a_projection_of_the_teacher(demonstrations: Demonstrations) -> None:
     for positions, velocities in zip(demonstrations, demonstrations.velocities, strict=True):
-        # In a plane to 3 mm, which no other two have.
+        # The movement lies in a plane to 3 mm.
         _, widths, axes = np.linalg.svd(positions - positions.mean(axis=0))
         assert widths[2] < 3e-3 * np.sqrt(len(positions))
-        # uᵀπ = uᵀu, but for the lag of the motors.
+        # uᵀπ = uᵀu, except for the lag of the motors.
         wanted = np.array([teacher(x) for x in positions])
         left = np.sum(velocities * (wanted - velocities), axis=1)
         assert np.abs(left[3:]).max() < 0.1 * np.sum(wanted**2, axis=1).max()
@@ -59,5 +59,5 @@ def test_it_reaches_where_cloning_does_not(demonstrations: Demonstrations) -> No
     assert ours[0].mean() < 1.3 * free.mean() and ours[1].mean() < 1.3 * sphere.mean()
     for name, policy in policies.items():
         cloned = attempts(policy, starts, LIMIT)
-        # Those that do not arrive within 10 s count as 10 s.
+        # Attempts that do not arrive within 10 s count as 10 s.
         assert cloned[0].mean() > 3.5 * ours[0].mean(), name

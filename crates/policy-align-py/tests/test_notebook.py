@@ -1,4 +1,4 @@
-"""The notebook runs, and says what it says."""
+"""The notebook runs and reproduces its stored outputs."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ NUMBER = re.compile(r"\d+(?:\.(\d*))?(?:e([-+]\d+))?")
 
 
 def outputs(notebook) -> list[list[str]]:
-    """What each cell printed, or of what kind its output is."""
+    """The printed text or the output type of each output, by cell."""
     cells = [cell.get("outputs", []) for cell in notebook.cells]
-    # A slow cell's text comes in pieces.
+    # The text of a slow cell arrives in pieces.
     def joined(cell):
         streams = groupby(cell, lambda output: output.get("name", id(output)))
         return ["".join(output.get("text", output["output_type"]) for output in outputs) for _, outputs in streams]
@@ -26,7 +26,7 @@ def outputs(notebook) -> list[list[str]]:
 
 
 def says_the_same(said: str, shown: str) -> bool:
-    """The same words; numbers to 2 %, a unit of the last digit, or 1e-9: processors differ in the last bits."""
+    """Equal words; numbers to 2 %, a unit of the last digit, or 1e-9, as processors differ in the last bits."""
 
     def near(one: re.Match[str] | None, other: re.Match[str] | None) -> bool:
         if one is None or other is None:

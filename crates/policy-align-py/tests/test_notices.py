@@ -1,4 +1,4 @@
-"""Licences of what the library contains."""
+"""Licences of the crates in the library."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def notices() -> str:
 
 
 def test_every_crate_that_the_library_names_has_its_licence(notices: str) -> None:
-    """Places of panics in the library are paths of sources, whose folders are crates with their versions."""
+    """The library contains source paths for its panic messages; their folders name crates with versions."""
     places = rb"registry/src/[^/\0]+/([\w+.-]+-\d+\.\d+\.\d+[\w+.-]*)/"
     folders = {name.decode() for name in re.findall(places, Path(_native.__file__).read_bytes())}
     titles = {re.sub(r"-(\d+\.\d+\.\d+.*)$", r" \1", folder) for folder in folders}

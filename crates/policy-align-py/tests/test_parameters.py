@@ -1,4 +1,4 @@
-"""Parameters, and errors in Python's words."""
+"""Parameters, and errors in Python's terms."""
 
 from __future__ import annotations
 

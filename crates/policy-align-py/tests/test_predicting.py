@@ -1,4 +1,4 @@
-"""Answers outside of the data, to single states and to what is no state; seeds, pictures and pages."""
+"""Predictions outside the data, at single states and for invalid states; seeds, plots and HTML."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def test_states_are_supported_as_their_support_says(name: str, request: pytest.F
     support, supports = model.support(states), model.supports(states)
     assert np.array_equal(supports, support >= (0.5 if name == "slope" else np.finfo(float).tiny))
     assert 100 < supports.sum() < 2900
-    # Not of the deviations that are asked for.
+    # The actions do not depend on whether standard deviations are requested.
     actions = model.predict(states, outside="nan")
     assert np.array_equal(np.isnan(actions[:, 0]), ~supports)
     if name == "slope":

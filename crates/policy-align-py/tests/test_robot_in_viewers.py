@@ -1,4 +1,4 @@
-"""A robot in MCAP, as programs that draw it read it, beside forward kinematics of our own in NumPy."""
+"""A robot in MCAP files, as read by viewers, compared with separate forward kinematics in NumPy."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-#: Turns, slides, stays, and follows: axes and origins at all angles.
+#: Revolute, prismatic, fixed and mimic joints, with axes and origins at various angles.
 ROBOT = """<robot name="press">
   <link name="world"/><link name="column"/><link name="plate"/><link name="thumb"/>
   <link name="ram"><visual><geometry><box size="0.1 0.1 0.2"/></geometry></visual></link>
@@ -29,7 +29,7 @@ JOINTS = ["turn", "lift", "grip"]
 
 
 def positions() -> np.ndarray:
-    """Two movements of one after another, (2, SAMPLES, 3)."""
+    """Joint positions of two movements, (2, SAMPLES, 3)."""
     times = 0.05 * np.arange(SAMPLES)
     return np.array(
         [[[np.sin(t + e), 0.4 * np.cos(2 * t), 3 * np.sin(0.7 * t + e)] for t in times] for e in range(2)]
@@ -62,7 +62,7 @@ def numbers(element: ET.Element | None, name: str, default: str) -> np.ndarray:
 
 
 def expected(state: np.ndarray) -> dict[str, tuple[str, np.ndarray]]:
-    """From the URDF's text alone: parent of each link, and its pose in it, (4, 4)."""
+    """From the URDF text alone: the parent of each link, and the pose in the parent's frame, (4, 4)."""
     values = dict(zip(JOINTS, state, strict=True))
     values["follow"] = -2 * values["grip"] + 0.1
     found = {}
@@ -144,7 +144,7 @@ def test_rerun_finds_the_robot_and_moves_its_links(bag: Path) -> None:
         names = [f"Transform3D:{name}" for name in ("parent_frame", "child_frame", "translation", "quaternion")]
         if all(name in columns for name in names):
             moved += zip(*(columns[name] for name in names), strict=True)
-    # Its importer reads the URDF from a topic of this name, and draws what is visible of every link.
+    # The importer reads the URDF from a topic of this name, and draws the visual geometry of every link.
     assert {"/press", "/robot_description"} <= entities
     assert {f"/press/visual_geometries/{link}/visual_0" for link in ("ram", "finger")} <= entities
     states = positions().reshape(-1, 3)
@@ -153,6 +153,6 @@ def test_rerun_finds_the_robot_and_moves_its_links(bag: Path) -> None:
         truth = expected(state)
         for [parent], [child], [translation], [quaternion] in moved[at * len(truth) : (at + 1) * len(truth)]:
             assert parent == truth[child][0]
-            # Rerun keeps single precision.
+            # Rerun stores single precision.
             np.testing.assert_allclose(translation, truth[child][1][:3, 3], atol=1e-6)
             np.testing.assert_allclose(matrix(*quaternion), truth[child][1][:3, :3], atol=1e-6)

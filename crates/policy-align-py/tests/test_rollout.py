@@ -1,4 +1,4 @@
-"""Roll-outs under constraints of Python's own."""
+"""Roll-outs under constraints given in Python."""
 
 from __future__ import annotations
 

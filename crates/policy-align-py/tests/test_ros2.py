@@ -1,4 +1,4 @@
-"""`policy-align serve --ros2` beside a robot that speaks by another implementation of DDS, on this machine."""
+"""`policy-align serve --ros2` with a robot that uses another implementation of DDS, on this machine."""
 
 import json
 import os
@@ -13,7 +13,7 @@ from typing import Any
 import pytest
 
 pytest.importorskip("cyclonedds", reason="cyclonedds is not installed")
-#: The robot is heard on this machine alone, where it announces itself every half second (every 8 by default).
+#: The robot is visible on this machine alone, and announces itself every half second (every 8 seconds by default).
 os.environ["CYCLONEDDS_URI"] = """<CycloneDDS><Domain>
   <General><Interfaces><NetworkInterface address="127.0.0.1"/></Interfaces></General>
   <Discovery><SPDPInterval>500ms</SPDPInterval></Discovery></Domain></CycloneDDS>"""
@@ -27,13 +27,13 @@ from cyclonedds.sub import DataReader  # noqa: E402
 from cyclonedds.topic import Topic  # noqa: E402
 from cyclonedds.util import duration  # noqa: E402
 
-#: Tests of one machine at a time do not hear each other.
+#: Separates tests that run on one machine at the same time.
 DOMAIN = 100 + os.getpid() % 100
-#: As controllers and robots of ros2_control have it.
+#: As in controllers and robots of ros2_control.
 RELIABLE = Qos(
     Policy.Reliability.Reliable(duration(milliseconds=100)), Policy.Durability.Volatile, Policy.History.KeepLast(100)
 )
-#: Seconds that discovery and a busy machine may take.
+#: Seconds allowed for discovery and a busy machine.
 PATIENCE = 30
 
 
@@ -78,7 +78,7 @@ class Array(IdlStruct, typename="std_msgs::msg::dds_::Float64MultiArray_"):
 
 
 class Robot:
-    """Publishes joint states, and keeps the commands that come."""
+    """Publishes joint states and receives commands."""
 
     def __init__(self, commands: str, kind: type[IdlStruct]) -> None:
         participant = DomainParticipant(DOMAIN)
@@ -91,11 +91,11 @@ class Robot:
         self.writer.write(JointState(Header(Time(0, 0), ""), names, positions, [], []))
 
     def commands(self) -> list[Any]:
-        """Those since the last call; a publisher that goes is a sample without data."""
+        """The commands since the last call; a departing publisher appears as a sample without data, which is dropped."""
         return [sample for sample in self.reader.take(1000) if hasattr(sample, "header") or hasattr(sample, "data")]
 
     def moves_on(self, wanted: Callable[[Any], bool], **joints: float) -> Any:
-        """Stays where it is until a command comes that is wanted."""
+        """Stays in place until a wanted command arrives."""
         end, last = time.monotonic() + PATIENCE, None
         while time.monotonic() < end:
             if joints:
@@ -120,7 +120,7 @@ def model(program: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def serve(program: Path, model: Path) -> Iterator[Callable[..., subprocess.Popen[str]]]:
-    """Starts the program; it is killed at the end if it goes on."""
+    """Starts the program; kills it at the end if it still runs."""
     started: list[subprocess.Popen[str]] = []
 
     def start(*flags: str, local: str = "1") -> subprocess.Popen[str]:
@@ -156,7 +156,7 @@ def test_commands_are_predictions_to_the_bit(
     robot, process = Robot("rt/velocity_controller/commands", Array), serve(local=local)
     for (x, y), action in zip(states, predicted(program, model, states), strict=True):
         assert any(action)
-        # The robot names its joints in another order, and has one more.
+        # The robot has its joints in another order, and one more.
         command = robot.moves_on(lambda command, action=action: list(command.data) == action, grip=9.0, y=y, x=x)
         assert not command.layout.dim and command.layout.data_offset == 0
     process.send_signal(signal.SIGINT)
@@ -170,7 +170,7 @@ def test_commands_are_predictions_to_the_bit(
 def test_the_last_command_is_zero(serve: Callable[..., subprocess.Popen[str]], end: signal.Signals) -> None:
     robot, process = Robot("rt/velocity_controller/commands", Array), serve("--rate", "200")
     robot.moves_on(lambda command: any(command.data), x=0.3, y=1.2)
-    # New states until it has ended: nothing but the end makes it stand.
+    # New states arrive until it has ended, so that only the end stops the robot.
     process.send_signal(end)
     last = None
     while process.poll() is None:
@@ -193,7 +193,7 @@ def test_it_stands_where_it_must_and_says_why(serve: Callable[..., subprocess.Po
     def moves(command: Any) -> bool:
         return any(command.data)
 
-    # Zero before the first state and zero for want of a joint look the same to a robot, but not in the lines of the program.
+    # A robot cannot distinguish zero before the first state from zero for a missing joint; the lines of the program can.
     assert process.stdout is not None
     lines: list[dict[str, Any]] = []
     while not lines or lines[-1]["halt"] != "missing":

@@ -23,7 +23,7 @@ STATES = np.random.default_rng(5).uniform(-1, 1, (50_000, 2))
 
 
 def counted_while(work) -> tuple[int, float]:
-    """How far another thread of Python counts meanwhile, and seconds."""
+    """The count that another Python thread reaches meanwhile, and the duration in seconds."""
     done, count = threading.Event(), 0
 
     def counting() -> None:
@@ -49,7 +49,7 @@ def test_other_threads_go_on(slope: SlopeGp) -> None:
     ):
         count, seconds = counted_while(work)
         alone, least = counted_while(lambda: time.sleep(0.2))
-        # A tenth of what it counts alone would be a thread that gets the lock between calls only.
+        # A thread that gets the lock between calls only would count at most a tenth of its count alone.
         assert count / seconds > 0.1 * alone / least, (count, seconds, alone)
 
 
@@ -81,7 +81,7 @@ except KeyboardInterrupt:
 
 
 def interrupted(script: str, after: float, within: float, then: str) -> None:
-    """Ctrl-C, so many seconds after the script has begun, is heard within so many, and the interpreter goes on."""
+    """Ctrl-C ``after`` seconds into the script acts in ``within`` seconds, and the interpreter continues."""
     with subprocess.Popen([sys.executable, "-c", script], stdout=subprocess.PIPE, text=True) as running:
         assert running.stdout is not None and running.stdout.readline() == "begins\n"
         time.sleep(after)
@@ -137,7 +137,7 @@ def test_a_forked_process_fits(rails) -> None:
 
 
 def resident() -> int:
-    """Bytes of memory in use, of Linux."""
+    """Resident memory in bytes, on Linux."""
     pages = int(Path("/proc/self/statm").read_text().split()[1])
     return pages * os.sysconf("SC_PAGE_SIZE")
 

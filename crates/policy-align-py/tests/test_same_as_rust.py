@@ -1,4 +1,4 @@
-"""The program and the package: the same files, the same words."""
+"""The program and the package write the same files and the same texts."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from conftest import TOY, without_time
 
 from policy_align import AutoGp, Demonstrations, DirectGp, PolicyAlign, PolicyAlignError, SlopeGp, load
 
-#: Where learners and their flags meet.
+#: Flags of the program, and the learners that correspond to them.
 LEARNERS = {
     "auto": AutoGp(),
     "slope": SlopeGp(),
@@ -33,7 +33,7 @@ def test_model_files_are_equal_byte_for_byte(learner: str, program: Path, tmp_pa
     assert theirs.exists(), done.stderr
     LEARNERS[learner].set_params(max_rows=100, random_state=3).fit(Demonstrations.read(TOY)).save(ours)
     assert without_time(ours.read_text()) == without_time(theirs.read_text())
-    # Each reads what the other wrote.
+    # Each reads the file of the other.
     x = np.array([[0.3, 1.2], [-1.0, 0.4]])
     assert np.array_equal(load(theirs).predict(x), load(ours).predict(x))
     assert run(program, "info", str(ours)).returncode == 0
@@ -97,5 +97,5 @@ def test_errors_have_the_programs_words(name: str, program: Path, tmp_path: Path
     lines = [line for line in theirs.splitlines() if not line.startswith("warning:")]
     assert lines[0] == f"error: {error.value.what}"
     assert lines[1] == f"  in:  {error.value.place}"
-    # What next begins with a flag, which has another name here.
+    # The hint begins with a flag, which has another name in Python.
     assert re.sub(r"\W", "", lines[2])[-12:] == re.sub(r"\W", "", error.value.hint)[-12:]

@@ -1,4 +1,4 @@
-"""The stubs say what is there."""
+"""The stubs match the native module, and the types of the package are consistent."""
 
 from __future__ import annotations
 

@@ -34,7 +34,7 @@ def film(path: Path) -> None:
     every = side_by_side(tuple(joined[:: len(joined) // 4]))
     colours = every.quantize(128, method=Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE)
     pictures = [picture.quantize(palette=colours, dither=Image.Dither.NONE) for picture in joined]
-    # The last one stays for two seconds.
+    # The last picture stays for two seconds.
     durations = [round(1000 / PER_SECOND)] * (len(pictures) - 1) + [2000]
     pictures[0].save(path, save_all=True, append_images=pictures[1:], duration=durations, loop=0, optimize=True)
     print(f"{path}: {len(pictures)} pictures, {path.stat().st_size / 1e6:.2f} MB")
@@ -69,7 +69,7 @@ def colour(text: str, alpha: float) -> np.ndarray:
 
 
 def draw_plane(scene: mujoco.MjvScene, at: np.ndarray, normal: np.ndarray) -> None:
-    """A thin square; its rotation takes z to the normal."""
+    """Draws a thin square, rotated from z to the normal."""
     across = np.linalg.svd(normal[None])[2][1:]
     turn = np.column_stack([*across, np.cross(*across)])
     geom = scene.geoms[scene.ngeom]

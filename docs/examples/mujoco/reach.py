@@ -1,7 +1,7 @@
-"""Better than its constrained teacher: an arm learns to reach from a hand that was bound to a plane.
+"""Better than its constrained teacher: an arm learns to reach from demonstrations with the hand bound to a plane.
 
     python reach.py record demonstrations      # MuJoCo: five data sets of 50 demonstrations, each in a random plane
-    python reach.py compare demonstrations     # learns offline, then tries what was learnt in MuJoCo
+    python reach.py compare demonstrations     # learns offline, then tries the policies in MuJoCo
     python reach.py film reach.gif             # needs a renderer, as MUJOCO_GL=osmesa or egl
 
 Needs ``policy_align``, ``mujoco``, ``scikit-learn`` and, for the film, ``pillow``. Metres and seconds; z is up.
@@ -23,11 +23,11 @@ from policy_align import AutoGp, Demonstrations, DirectGp, PolicyAlignWarning
 
 GOAL = np.array([0.45, 0.0, 0.3])
 SHOULDER = np.array([0.0, 0.0, 0.3])
-POST = np.array([0.45, 0.16])  # where it stands; it is vertical
+POST = np.array([0.45, 0.16])  # position of a vertical post
 LINK = 0.35  # length of the upper arm, and of the forearm
 CONTROL = 0.02  # seconds between two commands
-ARRIVED = 0.02  # this near the goal
-LIMIT = 30.0  # seconds that a movement may take
+ARRIVED = 0.02  # distance to the goal at which the hand has arrived
+LIMIT = 30.0  # longest movement, in seconds
 
 Policy = Callable[[np.ndarray], np.ndarray]
 Normal = Callable[[np.ndarray], np.ndarray]
@@ -59,7 +59,7 @@ class Arm:
         return self._jacobian @ self.data.qvel
 
     def place(self, x: np.ndarray) -> None:
-        """At rest with the hand at x, elbow up."""
+        """Sets the arm at rest with the hand at x, elbow up."""
         (across, up), far = (np.hypot(x[0], x[1]), x[2] - SHOULDER[2]), np.linalg.norm(x - SHOULDER)
         bend = np.arccos(far / (2 * LINK))
         mujoco.mj_resetData(self.model, self.data)
@@ -67,7 +67,7 @@ class Arm:
         mujoco.mj_forward(self.model, self.data)
 
     def follow(self, velocity: np.ndarray) -> None:
-        """For CONTROL seconds, by damped least squares."""
+        """Moves the hand at this velocity for CONTROL seconds, by damped least squares."""
         mujoco.mj_jacSite(self.model, self.data, self._jacobian, None, self._hand)
         weighed = self._jacobian @ self._jacobian.T + 1e-6 * np.eye(3)
         self.data.ctrl[:] = self._jacobian.T @ np.linalg.solve(weighed, velocity)
@@ -75,7 +75,7 @@ class Arm:
 
 
 def start(rng: np.random.Generator) -> np.ndarray:
-    """Within reach, away from the goal and the post."""
+    """A random position within reach, away from the goal and the post."""
     while True:
         x = rng.uniform([0.28, -0.3, 0.1], [0.58, 0.3, 0.5])
         if np.linalg.norm(x - GOAL) > 0.2 and np.linalg.norm(x - SHOULDER) < 0.66 and np.linalg.norm(x[:2] - POST) > 0.05:
@@ -102,7 +102,7 @@ def bound(velocity: np.ndarray, normal: np.ndarray) -> np.ndarray:
 
 
 def record(path: Path, seed: int, episodes: int = 50, seconds: float = 6.0) -> int:
-    """Demonstrations of the teacher, each with the hand bound to another plane; how many of them reach the goal."""
+    """Writes demonstrations of the teacher, each with the hand bound to a different plane; returns how many reach the goal."""
     rng, arm, reached = np.random.default_rng(seed), Arm(), 0
     with path.open("w", newline="") as file:
         rows = csv.writer(file)
@@ -130,19 +130,19 @@ def network(demonstrations: Demonstrations, at_rest: bool = True) -> Policy:
     centre, width, speed = states.mean(axis=0), states.std(axis=0), velocities.std()
     learnt = MLPRegressor(hidden_layer_sizes=(64, 64), max_iter=300, random_state=1)
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # that 300 passes may not have converged
+        warnings.simplefilter("ignore")  # 300 passes may not have converged
         learnt.fit((states - centre) / width, velocities / speed)
     return lambda x: learnt.predict([(x - centre) / width])[0] * speed
 
 
 def learnt(demonstrations: Demonstrations) -> dict[str, Policy]:
-    """What each learner makes of the same recordings, without a step of the simulator."""
+    """The policies that the learners learn from the same recordings, without a step of the simulator."""
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", PolicyAlignWarning)  # that cloning is not to be trusted here
+        warnings.simplefilter("ignore", PolicyAlignWarning)  # cloning is not trustworthy here
         ours, direct = AutoGp().fit(demonstrations), DirectGp().fit(demonstrations)
     return {
         "policy-align": ours.act,
-        # It knows little here, and would stand still where it does not.
+        # It has little support here; where it has none, it would stand still.
         "cloning, Gaussian process": lambda x: direct.act(x, outside="extrapolate"),
         "cloning, network": network(demonstrations),
         "cloning, network, moving samples only": network(demonstrations, at_rest=False),
@@ -184,7 +184,7 @@ def compare(folder: Path, n_starts: int = 20) -> dict[str, np.ndarray]:
 
 
 def print_table(seconds: dict[str, np.ndarray]) -> None:
-    """As Markdown: means, and standard deviations over data sets; what does not arrive counts as LIMIT."""
+    """Prints Markdown: means, and standard deviations over data sets; attempts that do not arrive count as LIMIT."""
     print("\n| | free: arrives | seconds | on the sphere: arrives | seconds |\n|---|---|---|---|---|")
     for name, of_all in seconds.items():
         cells = [f"{np.mean(kind < LIMIT):.0%} | {kind.mean():.3g} ± {kind.mean(axis=1).std():.1g}" for kind in of_all.swapaxes(0, 1)]

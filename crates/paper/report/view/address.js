@@ -1,9 +1,9 @@
 "use strict";
-// The state of the view in the address of the page, so that it can be sent to somebody: "#walk&learner=naive&start=1..".
+// The state of the view in the address of the page, so that it can be shared: "#walk&learner=naive&start=1..".
 
 const PLACE = "#walk";
 
-/** What the address says; nothing where it is not about the view. Numbers that are none are left out. */
+/** Parses an address; `null` if it does not concern the view. Invalid numbers are left out. */
 function readAddress(hash) {
   const [place, ...rest] = hash.split("&");
   if (place !== PLACE || rest.length === 0) return null;
@@ -26,7 +26,7 @@ function readAddress(hash) {
   };
 }
 
-/** The address that says this. */
+/** The address with this state. */
 function writeAddress({ choice: { learner, constraint, start }, sample, speed, all, ghost, loop }, camera) {
   const place = Object.values(camera.place()).map((value) => Number(value.toFixed(3)));
   const flag = (value) => (value ? "yes" : "no");

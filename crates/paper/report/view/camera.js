@@ -1,5 +1,5 @@
 "use strict";
-// A camera that goes around a point, its centre: angles in radians, lengths in metres.
+// A camera that orbits a point, its centre: angles in radians, lengths in metres.
 
 const VIEWS = {
   start: { label: "Reset", azimuth: -0.95, elevation: 0.42 },
@@ -12,11 +12,11 @@ const ANGLE_OF_VIEW = 0.5;
 const NARROW = 1.15;
 const CENTRE = [0.45, 0, 0.42];
 const DISTANCE = { least: 0.35, most: 7 };
-/** The centre stays within this of where it is at first. */
+/** Each coordinate of the centre stays within this distance of its first value. */
 const ASTRAY = 1.5;
-/** So near one looks at a thing that was asked for. */
+/** Largest distance from a place selected for a nearer look. */
 const LOOK_AT = 1.3;
-/** Room around what is framed. */
+/** Factor for the margin around the framed points. */
 const MARGIN = 1.05;
 
 class Camera {
@@ -27,7 +27,7 @@ class Camera {
     this.arrive();
   }
 
-  /** Sets out for a named view. */
+  /** Starts moving to a named view. */
   look(name) {
     const { azimuth, elevation } = VIEWS[name];
     const now = this.azimuth ?? azimuth;
@@ -37,30 +37,30 @@ class Camera {
     this.goal = { azimuth: azimuth + 2 * Math.PI * turns, elevation, distance, ...Camera.centred(CENTRE) };
   }
 
-  /** Sets out for a nearer look at a place. */
+  /** Starts moving to a nearer look at a place. */
   focus(place) {
     this.goal = { ...this.goal, ...Camera.centred(place), distance: Math.min(this.goal.distance, LOOK_AT) };
   }
 
-  /** Where it should be, as `place` tells it, at once. */
+  /** Moves at once to a place in the form that `place` returns. */
   put(place) {
     this.goal = { ...this.goal, ...place };
     this.arrive();
   }
 
-  /** All that says where it is: angles, distance, and the centre's coordinates. */
+  /** Place of the camera, after any motion: angles, distance, and the centre's coordinates. */
   place() {
     const { azimuth, elevation, distance, x, y, z } = this.goal;
     return { azimuth, elevation, distance, x, y, z };
   }
 
-  /** A centre, which does not go astray. */
+  /** The centre for a place, clamped to its limits. */
   static centred(place) {
     const [x, y, z] = place.map((value, i) => Math.min(Math.max(value, CENTRE[i] - ASTRAY), CENTRE[i] + ASTRAY));
     return { x, y, z };
   }
 
-  /** The least distance from which all is in the picture. */
+  /** The least distance from which all points are in the picture. */
   framing(azimuth, elevation) {
     const { right, up, back } = Camera.axes(azimuth, elevation);
     const slope = Math.tan(ANGLE_OF_VIEW / 2);
@@ -72,33 +72,33 @@ class Camera {
     return distances.reduce((a, b) => Math.max(a, b), DISTANCE.least);
   }
 
-  /** Goes around by angles, at once. The eye stays above the floor. */
+  /** Orbits by angles, at once. The eye stays above the floor. */
   orbit(azimuth, elevation) {
     const raised = Math.min(Math.max(this.goal.elevation + elevation, 0.02), Math.PI / 2);
     this.goal = { ...this.goal, azimuth: this.goal.azimuth + azimuth, elevation: raised };
     this.arrive();
   }
 
-  /** Goes nearer (factor below 1) or away, at once; what is at `at` in the picture, −1 to 1 of half its height, stays there. */
+  /** Moves nearer (factor below 1) or away, at once; the point `at` of the picture, in units of half its height, stays. */
   zoom(factor, at = [0, 0], aspect = 1) {
     const distance = Math.min(Math.max(this.goal.distance * factor, DISTANCE.least), DISTANCE.most);
     const towards = times(this.across(at, aspect), 1 - distance / this.goal.distance);
     this.put({ distance, ...Camera.centred(plus(this.centre(), towards)) });
   }
 
-  /** Moves what is seen by a part of half the picture's height, at once. */
+  /** Shifts the picture at once, in units of half its height. */
   pan(by, aspect) {
     this.put(Camera.centred(minus(this.centre(), this.across(by, aspect))));
   }
 
-  /** From the centre, across the line of sight, to what is this far from the middle of the picture. */
+  /** The vector from the centre, across the line of sight, to the point at this offset from the middle of the picture. */
   across([aside, above], aspect) {
     const { right, up } = Camera.axes(this.goal.azimuth, this.goal.elevation);
     const half = Math.tan(Camera.angle(aspect) / 2) * this.goal.distance;
     return plus(times(right, aside * half), times(up, above * half));
   }
 
-  /** From the eye through a place of the picture, of length 1. */
+  /** The unit vector from the eye through a point of the picture. */
   sight(at, aspect) {
     return unit(minus(plus(this.centre(), this.across(at, aspect)), this.eye()));
   }
@@ -107,7 +107,7 @@ class Camera {
     Object.assign(this, this.goal);
   }
 
-  /** Moves towards its goal for so many seconds; whether it has still some way to go. */
+  /** Moves towards its goal for this many seconds; returns whether it has not arrived yet. */
   advance(seconds) {
     const share = 1 - Math.exp(-9 * seconds);
     let left = 0;
@@ -119,7 +119,7 @@ class Camera {
     return left >= 0.002;
   }
 
-  /** Of a camera there, unit vectors to its right, up, and from the centre to it. */
+  /** Unit vectors of a camera at these angles: to its right, up, and from the centre to it. */
   static axes(azimuth, elevation) {
     const [ca, sa] = [Math.cos(azimuth), Math.sin(azimuth)];
     const [ce, se] = [Math.cos(elevation), Math.sin(elevation)];
@@ -143,7 +143,7 @@ class Camera {
     return 2 * Math.atan(Math.tan(ANGLE_OF_VIEW / 2) * Math.max(1, NARROW / aspect));
   }
 
-  /** From the world to a picture of this ratio of width to height. */
+  /** The matrix from the world to a picture of this ratio of width to height. */
   matrix(aspect) {
     const { right, up, back } = this.axes();
     return product(perspective(Camera.angle(aspect), aspect, 0.1, 30), worldToViewer(this.eye(), right, up, back));

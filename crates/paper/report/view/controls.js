@@ -1,5 +1,5 @@
 "use strict";
-// Buttons, sliders and words around the picture.
+// Buttons, sliders and text around the picture.
 
 /** An element with attributes, listeners ("onclick") and children. */
 function make(tag, attributes = {}, ...children) {
@@ -12,12 +12,12 @@ function make(tag, attributes = {}, ...children) {
   return element;
 }
 
-/** Gives an element another text, if it is another: what is written anew is read out anew. */
+/** Sets an element's text if it differs, because screen readers read out text that is set again. */
 function write(element, text) {
   if (element.textContent !== text) element.textContent = text;
 }
 
-/** Several options of which one is chosen; each is `{ value, label, swatch }`. */
+/** Several options, one of which is selected; each is `{ value, label, swatch }`. */
 class Options {
   constructor(title, options, choose) {
     // Two views on a page must not share their options.
@@ -40,7 +40,7 @@ class Options {
 const WORTH_TELLING = 0.001;
 const SPEEDS = [1, 2, 5, 10, 20];
 
-/** What its reader asks of the view: `actions` has a function for each thing that can be asked for. */
+/** The controls of the view; `actions` has a function for each request of the reader. */
 class Controls {
   constructor(playback, actions) {
     const { document: data } = playback;
@@ -85,7 +85,7 @@ class Controls {
       this.words);
   }
 
-  /** Shows the present state. */
+  /** Shows the current state. */
   show(playback) {
     for (const [name, options] of Object.entries(this.options)) options.show(playback.choice[name]);
     for (const name of ["all", "ghost", "loop"]) this[name].checked = playback[name];
@@ -97,17 +97,17 @@ class Controls {
     const { sample, lastSample, document: { time_step: step } } = playback;
     const seconds = (count) => (count * step).toFixed(1);
     this.slider.max = lastSample;
-    // While it plays the thumb glides; a key moves it by a sample.
+    // While it plays, the thumb glides; otherwise a key moves it by one sample.
     this.slider.step = playback.playing ? "any" : 1;
     this.slider.value = sample;
     this.slider.setAttribute("aria-valuetext", `${seconds(sample)} of ${seconds(lastSample)} seconds`);
     write(this.time, `${seconds(sample)} s of ${seconds(lastSample)} s`);
-    // Words are read out as they change: not at every step, and not while the thumb is on its way.
+    // Screen readers read out changes of the text, but not while it plays or the thumb is dragged.
     this.words.setAttribute("aria-live", playback.playing ? "off" : "polite");
     if (!this.sliding) write(this.words, Controls.inWords(playback));
   }
 
-  /** Which hands a plate holds, and why. */
+  /** A sentence with the hands that a plate holds, and the reason. */
   static held([left, right]) {
     const who = left && right ? "hands are" : left ? "left hand is" : right ? "right hand is" : "";
     return who && ` Its ${who} held by the plate before ${left && right ? "their places" : "its place"}: `
@@ -148,7 +148,7 @@ function viewButtons(look, zoom, fill) {
   const nearer = make("button", { type: "button", "aria-label": "Nearer (+)", onclick: () => zoom(1 / 1.2) }, "+");
   const farther = make("button", { type: "button", "aria-label": "Farther (−)", onclick: () => zoom(1.2) }, "−");
   const whole = make("button", { type: "button", onclick: fill }, "Full screen");
-  // Where the browser lets nothing fill the screen, nothing offers it.
+  // No button if the browser does not support full screen.
   const last = document.fullscreenEnabled ? [whole] : [];
   return make("div", { class: "view-buttons", role: "group", "aria-label": "Camera" }, ...views, nearer, farther, ...last);
 }

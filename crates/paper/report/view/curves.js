@@ -1,9 +1,9 @@
 "use strict";
-// How far the hands are from their places over time, above the slider and as wide as its way: the line across is now.
+// Distances of the hands from their places over time, above the slider and as wide as its track; a line marks the time.
 
-/** Of the two hands the farther one is drawn; the picture is this high, and so many units wide. */
+/** Size and margin of the picture, in its units. It shows the farther of the two hands. */
 const CURVES = { width: 1000, height: 130, room: 6 };
-/** Seconds from mark to mark. */
+/** Seconds between two marks. */
 const EVERY = 10;
 const LINE_DASHES = { naive: "1 5", policy_align: "9 5" };
 
@@ -34,7 +34,7 @@ class DistanceCurves {
     this.picture.addEventListener("pointermove", to);
   }
 
-  /** Shows all learners' curves of the present choice, and the time. */
+  /** Shows the learners' curves for the current choice, and the time. */
   show(playback) {
     const { choice: { constraint, start }, learners, lastSample, sample } = playback;
     const drawn = [constraint, start, ...learners].join();
@@ -48,7 +48,7 @@ class DistanceCurves {
   draw(playback) {
     const { width, height, room } = CURVES;
     const curves = playback.learners.map((learner) => [learner, playback.course(learner).map((both) => Math.max(...both))]);
-    // To the next tenth of a metre.
+    // Rounded up to a tenth of a metre.
     const top = Math.ceil(10 * Math.max(...curves.flatMap(([, curve]) => curve))) / 10;
     const up = (metres) => height - room - metres / top * (height - 2 * room);
     const lines = curves.map(([learner, curve]) => {

@@ -1,5 +1,5 @@
 "use strict";
-// How a hand moves the camera: mouse, fingers, wheel and keys.
+// Control of the camera by mouse, fingers, wheel and keys.
 
 const TURN_PER_PIXEL = 0.008;
 const TURN_PER_KEY = 0.12;
@@ -14,19 +14,19 @@ const KEYS = {
   Home: (camera) => camera.look("start"),
 };
 
-/** Where an event is in the picture: from its middle to the right and up, in parts of half its height; and its shape. */
+/** Position of an event in the picture, from its middle to the right and up in half heights; and the aspect ratio. */
 function within(canvas, [x, y]) {
   const { left, top, width, height } = canvas.getBoundingClientRect();
   return { at: [(2 * (x - left) - width) / height, 1 - 2 * (y - top) / height], aspect: width / height };
 }
 
 /**
- * Moves the camera as the canvas is dragged, pinched, scrolled and typed at; then calls `changed`. `pick` finds the place
- * that is seen in a place of the picture.
+ * Moves the camera when the canvas is dragged, pinched, scrolled or receives keys, then calls `changed`. `pick` finds the
+ * place that is visible along a line of sight.
  */
 function listen(canvas, camera, pick, changed) {
   listenToPointers(canvas, camera, changed);
-  // The page keeps the wheel until the picture is asked for by a click or the keyboard.
+  // The wheel scrolls the page until a click or the keyboard focuses the picture.
   canvas.addEventListener("wheel", (event) => {
     if (!event.ctrlKey && document.activeElement !== canvas) return;
     event.preventDefault();

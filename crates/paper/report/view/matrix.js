@@ -13,10 +13,10 @@ const length = (a) => Math.hypot(...a);
 const unit = (a) => times(a, 1 / length(a));
 const mix = (a, b, share) => a.map((value, i) => value + (b[i] - value) * share);
 
-/** The vector, turned. */
+/** The rotated vector. */
 const turned = (rotation, v) => [0, 3, 6].map((row) => dot(rotation.slice(row, row + 3), v));
 
-/** First the inner pose, then the outer. */
+/** The composition of two poses: first the inner, then the outer. */
 function composed(outer, inner) {
   const [a, b] = [outer.rotation, inner.rotation];
   const entry = (_, i) => {
@@ -37,7 +37,7 @@ function rotationAbout([x, y, z], angle) {
   ];
 }
 
-/** The pose of what lies along z around the middle of two points. */
+/** The pose at the middle of two points, with the z axis along the line between them. */
 function between(from, to) {
   const along = unit(minus(to, from));
   const aside = unit(cross(Math.abs(along[0]) < 0.9 ? [1, 0, 0] : [0, 1, 0], along));
@@ -57,7 +57,7 @@ function product(a, b) {
   return Array.from({ length: 16 }, entry);
 }
 
-/** From the world to a viewer at `eye` who looks along −`back`, with `right` and `up` in the picture. */
+/** The matrix from the world to a viewer at `eye` who looks along −`back`, with `right` and `up` in the picture. */
 function worldToViewer(eye, right, up, back) {
   const rotation = [...right, ...up, ...back];
   return matrix({ rotation, translation: times(turned(rotation, eye), -1) });

@@ -1,6 +1,6 @@
 "use strict";
-// Bodies as triangles. A mesh is a list of vertices, eight numbers each: position, normal, and how far along a path it
-// is (metres, samples); and a list of triangles, counter-clockwise as seen from outside.
+// Bodies as triangles. A mesh is a list of vertices, eight numbers each: position, normal, and distance along a path
+// (metres, samples); and a list of triangles, counter-clockwise as seen from outside.
 
 class Mesh {
   vertices = [];
@@ -14,7 +14,7 @@ class Mesh {
     this.vertices.push(...position, ...normal, ...along);
   }
 
-  /** Triangles between rows of vertices, each row a ring, that begin at vertex `first`. */
+  /** Adds triangles between rows of vertices, each row a ring, which begin at vertex `first`. */
   rings(first, rows, columns) {
     for (let row = 0; row + 1 < rows; row++) {
       for (let column = 0; column < columns; column++) {
@@ -25,7 +25,7 @@ class Mesh {
     }
   }
 
-  /** Closes a ring of vertices around the z axis, at this height, upwards where that is positive. */
+  /** Closes a ring of vertices around the z axis at height `z`, facing up if it is positive, else down. */
   lid(first, columns, z) {
     const middle = this.count;
     this.vertex([0, 0, z], [0, 0, Math.sign(z)]);
@@ -47,8 +47,8 @@ class Mesh {
 }
 
 /**
- * A box with rounded edges, of half this size. It is a sphere whose eight octants are pulled apart: vertices between
- * octants are there twice, and the flat faces open between them.
+ * A box with rounded edges and this half size. It is a sphere whose eight octants are pulled apart: vertices between
+ * octants are duplicated, and the flat faces open between them.
  */
 function roundedBox(half, radius, steps) {
   const mesh = new Mesh();
@@ -104,7 +104,7 @@ function capsule(radius, length) {
   return mesh;
 }
 
-/** A shape of the figure data, as its robot's URDF has it. */
+/** The mesh of a shape of the figure data, as in the robot's URDF. */
 function primitive({ kind, size }) {
   if (kind === "sphere") return sphere(size[0]);
   return kind === "cylinder" ? cylinder(size[0], size[1]) : box(size);
@@ -118,7 +118,7 @@ function square(half) {
   return mesh;
 }
 
-/** A tube along points, one a sample. */
+/** A tube along points, one per sample. */
 function tube(points, radius) {
   const [mesh, sides] = [new Mesh(), 10];
   const stops = apart(points, 0.001);
@@ -128,7 +128,7 @@ function tube(points, radius) {
     const [before, after] = [stops[Math.max(i - 1, 0)].point, stops[Math.min(i + 1, stops.length - 1)].point];
     far += length(minus(point, before));
     const along = stops.length > 1 ? unit(minus(after, before)) : [1, 0, 0];
-    // A ring's first direction is the last one's, as far as it is across the path here: so the tube is not twisted.
+    // A ring's first direction is the previous ring's, projected across the path, so that the tube is not twisted.
     across = minus(across, times(along, dot(across, along)));
     across = length(across) > 1e-6 ? unit(across) : unit(cross(along, [0.3, 0.9, 0.1]));
     const aside = cross(along, across);
@@ -142,7 +142,7 @@ function tube(points, radius) {
   return mesh;
 }
 
-/** Points with their numbers, without those nearer than this to the last. */
+/** Points with their indices, without those nearer than `least` to the last point kept. */
 function apart(points, least) {
   const stops = [];
   points.forEach((point, sample) => {

@@ -1,15 +1,15 @@
 "use strict";
-// Which movement is shown, and where in time it is. Knows nothing of drawing.
+// The movement shown and its current time, independent of drawing.
 
-/** Rows of positions from their steps, which are written in whole parts of a unit. */
+/** Rows of positions from their steps, which are stored as integer multiples of 1 / `parts`. */
 function rows(steps, parts) {
   const sum = steps[0].map(() => 0);
   return steps.map((step) => step.map((by, k) => (sum[k] += by) / parts));
 }
 
-/** Slower than this a hand is at rest, metres a second. */
+/** A hand slower than this is at rest, metres per second. */
 const AT_REST = 0.001;
-/** Palms are in the middle of hands 3.5 cm thick: deeper than this the ball is not held but gone through, metres. */
+/** Palms are in the middle of hands 3.5 cm thick. Deeper than this, a palm goes through the ball, metres. */
 const DEEP = 0.01;
 
 class Playback {
@@ -26,7 +26,7 @@ class Playback {
       constraint: ids(document.constraints),
       start: document.starts,
     };
-    // What shows the point: the obstacle that no demonstration shows, which stops the naive learner's hands.
+    // The most instructive choice: the obstacle in no demonstration, which stops the naive learner's hands.
     const { learner, constraint } = this.options;
     const unseen = constraint.includes("obstacle") ? "obstacle" : constraint[0];
     this.choice = { learner: learner.at(-1), constraint: unseen, start: document.starts[0] };
@@ -36,11 +36,11 @@ class Playback {
     this.courses = new Map();
     this.speed = 5;
     this.playing = false;
-    // The last picture says most: hands at the ball, their paths behind them.
+    // Starts with the last picture, the most informative one: hands at the ball, with their paths.
     this.sample = this.lastSample;
   }
 
-  /** Changes some of learner, constraint, start; "all" shows everybody's paths, "ghost" the expert's robot too. */
+  /** Changes learner, constraint or start; "all" shows all learners' paths, "ghost" also the expert's robot. */
   select({ all = this.all, ghost = this.ghost, loop = this.loop, ...choice }) {
     if (choice.learner === "all") {
       all = true;
@@ -60,7 +60,7 @@ class Playback {
     return this.document.movements.find((movement) => names.every((name) => movement[name] === wanted[name]));
   }
 
-  /** Whose paths are shown. */
+  /** The learners whose paths are shown. */
   get learners() {
     return this.all ? this.options.learner : [this.choice.learner];
   }
@@ -69,7 +69,7 @@ class Playback {
     return this.movement().joints.length - 1;
   }
 
-  /** Starts; at the end, from the beginning. */
+  /** Starts playing, from the beginning if at the end. */
   play() {
     if (this.sample >= this.lastSample) this.sample = 0;
     this.playing = true;
@@ -83,7 +83,7 @@ class Playback {
     this.sample = Math.min(Math.max(sample, 0), this.lastSample);
   }
 
-  /** So many seconds go by in front of the screen. */
+  /** Advances by this many seconds of real time. */
   advance(seconds) {
     this.seek(this.sample + seconds * this.speed / this.document.time_step);
     if (this.sample < this.lastSample) return;
@@ -91,7 +91,7 @@ class Playback {
     else this.pause();
   }
 
-  /** A row of a movement at a time, between samples on a straight line. */
+  /** A row of a movement at a time, linearly interpolated between samples. */
   static at(rows, sample) {
     const before = Math.floor(sample);
     return mix(rows[before], rows[Math.min(before + 1, rows.length - 1)], sample - before);
@@ -102,18 +102,18 @@ class Playback {
     return Playback.at(this.movement(learner).joints, sample);
   }
 
-  /** Where a learner's policy wants the palms, left and right, metres. */
+  /** Positions of the palms in a learner's policy, left and right, metres. */
   palms(learner, sample = this.sample) {
     const row = Playback.at(this.movement(learner).palms, sample);
     return [row.slice(0, 3), row.slice(3)];
   }
 
-  /** How far the robot's palms are from their places at the ball, left and right, metres. */
+  /** Distances of the robot's palms from their places at the ball, left and right, metres. */
   distances(learner, sample) {
     return this.toPlaces(this.robot.hands(this.joints(learner, sample)));
   }
 
-  /** How far the robot's palms are at every sample, a row each; left and right, metres. */
+  /** Distances of the robot's palms at every sample, one row each; left and right, metres. */
   course(learner) {
     const name = [this.choice.constraint, this.choice.start, learner].join();
     if (!this.courses.has(name)) {
@@ -123,7 +123,7 @@ class Playback {
     return this.courses.get(name);
   }
 
-  /** Which hands a plate holds at the end of a movement: before it, in the space where it is felt, and at rest. */
+  /** Whether a plate holds each hand at the end of a movement: at rest before the plate, within its reach. */
   held(learner) {
     const { palms, plates } = this.movement(learner);
     const { wall, target } = this.document.scene;
@@ -135,14 +135,14 @@ class Playback {
     });
   }
 
-  /** How many samples a palm of the robot is within the ball, deeper than what hides in a hand. */
+  /** Number of samples with a palm of the robot within the ball, deeper than `DEEP`. */
   withinBall(learner) {
     const { centre, diameter } = this.document.scene.ball;
     const inside = (palm) => length(minus(palm, centre)) < diameter / 2 - DEEP;
     return this.movement(learner).joints.filter((joints) => this.robot.hands(joints).some(inside)).length;
   }
 
-  /** How far they would be if its joints could follow. */
+  /** Distances of the palms if the joints could follow the policy. */
   wantedDistances(learner, sample) {
     return this.toPlaces(this.palms(learner, sample));
   }

@@ -1,6 +1,6 @@
 "use strict";
-// Draws a list of things into a canvas: first their depths as the sun sees them, for the shadows, then what is solid,
-// then what one can see through.
+// Draws a list of things into a canvas: first their depths as seen from the sun, for the shadows, then opaque things,
+// then transparent ones.
 
 const SHADOW_PIXELS = 1024;
 const SHADOW_CENTRE = [0.4, 0, 0.5];
@@ -8,7 +8,7 @@ const SHADOW_REACH = 1.6;
 const SUN = unit([0.35, -0.45, 1]);
 
 class Renderer {
-  /** Throws where there is no WebGL 2. */
+  /** Throws without WebGL 2. */
   constructor(canvas) {
     // The buffer is kept so that the picture can be printed, copied and tested.
     const gl = canvas.getContext("webgl2", { antialias: true, alpha: false, preserveDrawingBuffer: true });
@@ -24,7 +24,7 @@ class Renderer {
     this.sunlight = Renderer.sunlight();
   }
 
-  /** A mesh on the graphics processor. */
+  /** Uploads a mesh to the graphics processor. */
   upload(mesh) {
     const gl = this.gl;
     const array = gl.createVertexArray();
@@ -41,7 +41,7 @@ class Renderer {
     return { array, buffers, count: mesh.triangles.length };
   }
 
-  /** Gives a mesh's memory back. */
+  /** Frees the memory of a mesh. */
   forget({ array, buffers }) {
     this.gl.deleteVertexArray(array);
     buffers.forEach((buffer) => this.gl.deleteBuffer(buffer));
@@ -49,7 +49,7 @@ class Renderer {
 
   /**
    * Draws things: `{ mesh, pose, color, opacity, kind, dash, now, shadow, through }`, of which all but mesh and
-   * color have a usual value. `light` is the palette: background, sky, ground, grid.
+   * color have defaults. `light` is the palette: background, sky, ground, grid.
    */
   draw(things, camera, light) {
     this.drawDepths(things.filter(({ shadow = true }) => shadow));
@@ -82,13 +82,13 @@ class Renderer {
     gl.uniform1i(at.u_kind, kind);
     gl.uniform2fv(at.u_dash, dash);
     gl.uniform1f(at.u_now, now);
-    // One sees through everything to some things.
+    // Some things are visible through everything.
     gl.depthFunc(through ? gl.ALWAYS : gl.LEQUAL);
     gl.bindVertexArray(mesh.array);
     gl.drawElements(gl.TRIANGLES, mesh.count, gl.UNSIGNED_INT, 0);
   }
 
-  /** What the sun sees: how far away the nearest body is. */
+  /** Draws the depths of the nearest bodies as seen from the sun. */
   drawDepths(things) {
     const { gl, depths: { handle, at } } = this;
     gl.bindFramebuffer(gl.FRAMEBUFFER, this.shadows.frame);
@@ -107,13 +107,13 @@ class Renderer {
     gl.disable(gl.POLYGON_OFFSET_FILL);
   }
 
-  /** From the world to the sun's picture. */
+  /** The matrix from the world to the picture seen from the sun. */
   static sunlight() {
     const right = unit(cross([0, 1, 0], SUN));
     return product(parallel(SHADOW_REACH), worldToViewer(SHADOW_CENTRE, right, cross(SUN, right), SUN));
   }
 
-  /** The texture that the sun's depths go to. */
+  /** The texture for the depths seen from the sun. */
   shadowMap() {
     const gl = this.gl;
     const [texture, frame] = [gl.createTexture(), gl.createFramebuffer()];
@@ -127,7 +127,7 @@ class Renderer {
     return { texture, frame };
   }
 
-  /** A program and where its uniforms are. */
+  /** A program and the locations of its uniforms. */
   linked(...sources) {
     const gl = this.gl;
     const handle = gl.createProgram();

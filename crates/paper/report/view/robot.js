@@ -1,9 +1,9 @@
 "use strict";
-// Forward kinematics: from joint positions to the poses of all links, in the frame of the first; and legs, which are
-// drawn and not computed with: hips go with the trunk, feet stand.
+// Forward kinematics: from joint positions to the poses of all links, in the frame of the first. Legs are only
+// drawn: hips move with the trunk, feet stand still.
 
 class Robot {
-  /** `document.robot` of the figure data: links, parents first; `legs` and `eye` as the page adds them. */
+  /** `document.robot` of the figure data: links, parents first; `legs` and `eye`, which the page adds. */
   constructor({ links, shapes, hands, legs, eye }) {
     Object.assign(this, { links, shapes, handLinks: hands, legs, eye });
     const { rotation, translation } = this.poses([])[legs.trunk];
@@ -24,7 +24,7 @@ class Robot {
     return poses;
   }
 
-  /** Where the left and the right palm are, metres. */
+  /** Positions of the left and the right palm, metres. */
   hands(joints) {
     const poses = this.poses(joints);
     return this.handLinks.map((link) => poses[link].translation);
@@ -39,7 +39,7 @@ class Robot {
     });
   }
 
-  /** Between bones of one length, in front of the line from hip to ankle; on that line where they are too short. */
+  /** The knee between equally long bones, in front of the line from hip to ankle; on it if they are too short. */
   static knee(hip, ankle, bone) {
     const down = minus(ankle, hip);
     const along = unit(down);
@@ -48,7 +48,7 @@ class Robot {
     return plus(mix(hip, ankle, 0.5), times(forward, bend));
   }
 
-  /** What a joint adds to its origin. */
+  /** The pose of a joint's link relative to the joint's origin. */
   static moved({ motion, axis }, position) {
     if (motion === "turn") return { rotation: rotationAbout(axis, position), translation: [0, 0, 0] };
     if (motion === "slide") return { rotation: IDENTITY.rotation, translation: times(axis, position) };

@@ -1,7 +1,7 @@
 "use strict";
-// The things in the picture: what stands there for good, what changes with the choice, what moves.
+// The things in the picture: fixed ones, those that change with the choice, and moving ones.
 
-/** How each learner's path is broken: metres from dash to dash, and the share that is drawn. As in the figures. */
+/** Dash pattern of each learner's path: metres from dash to dash, and the share that is drawn. As in the figures. */
 const DASHES = { expert: [1, 1], naive: [0.016, 0.5], policy_align: [0.045, 0.66], slope_gp: [1, 1] };
 const PATH_RADIUS = 0.0055;
 const PLATE_THICKNESS = 0.008;
@@ -30,7 +30,7 @@ class Scene {
     this.eye = upload(sphere(robot.eye.radius));
     this.head = robot.links.findIndex(({ name }) => name === "head");
     this.extent = this.corners();
-    // A palm is a point; the hand around it is the nearest link with a body.
+    // A palm is a point; the hand around it is the nearest ancestor link with a body.
     this.handLinks = robot.handLinks.map((link) => {
       while (!this.links[link]) link = robot.links[link].parent;
       return link;
@@ -38,7 +38,7 @@ class Scene {
     this.chosen = { meshes: [] };
   }
 
-  /** Points between which all that ever stands here is: table, plates, and the robot as it starts, metres. */
+  /** Points that enclose the scene: table, plates, and the robot at its start, metres. */
   corners() {
     const { playback: { robot, document: { movements } }, scene: { table, wall, stage } } = this;
     const box = ([x, y, z], [far, left, top]) => [x, far].flatMap((a) => [y, left].flatMap((b) => [z, top].map((c) => [a, b, c])));
@@ -57,7 +57,7 @@ class Scene {
     ];
   }
 
-  /** Builds what goes with a choice: plates and paths. */
+  /** Builds the plates and paths of a choice. */
   choose() {
     this.chosen.meshes.forEach((mesh) => this.renderer.forget(mesh));
     const meshes = [];
@@ -77,7 +77,7 @@ class Scene {
     this.chosen = { meshes, plates, paths };
   }
 
-  /** All things at the present time. */
+  /** All things at the current time. */
   things(palette) {
     return [
       { mesh: this.floor, color: palette.floor, kind: KIND.floor, shadow: false },
@@ -108,7 +108,7 @@ class Scene {
     return [...links.filter(({ mesh }) => mesh), ...legs, ...eyes];
   }
 
-  /** Where eyes are in the frame of the head. */
+  /** Positions of the eyes in the frame of the head. */
   eyes() {
     const skull = this.playback.robot.shapes.find(({ link, kind }) => link === this.head && kind === "sphere");
     if (!skull) return [];
@@ -119,7 +119,7 @@ class Scene {
     ));
   }
 
-  /** The place of the ball, of a body of the robot or of the table top that is first seen along a line of sight. */
+  /** The first place along a line of sight: the centre of the ball or of a body of the robot, a point of the table top or the floor. */
   pick(eye, sight) {
     const { playback: { robot }, scene: { ball, table } } = this;
     const poses = robot.poses(this.playback.joints());
@@ -141,8 +141,8 @@ class Scene {
   }
 
   /**
-   * Each path, faint, as if bodies were glass, and solid up to now; a dot where each learner's palms are, and where
-   * they should go.
+   * Each path, faint through all bodies, and solid up to the current time; dots at each learner's palms and at their
+   * targets.
    */
   pathThings(palette) {
     const { playback } = this;
@@ -170,7 +170,7 @@ class Scene {
     return { rotation: IDENTITY.rotation, translation };
   }
 
-  /** A top on four legs, flush with its corners. */
+  /** A table top on four legs, flush with its corners. */
   static tableMesh({ table: { top, near, far, half_width: side }, stage: { board: thick, leg } }) {
     const mesh = new Mesh();
     mesh.add(box([far - near, 2 * side, thick]), Scene.at([(near + far) / 2, 0, top - thick / 2]));
@@ -181,7 +181,7 @@ class Scene {
     return mesh;
   }
 
-  /** A plate, the space in which it is felt, and its edges. An open end (null) ends with the table and has no edge. */
+  /** A plate, the space in which it acts, and its edges. An open end (null) ends with the table and has no edge. */
   static plateMeshes([from, to], { wall, table, stage: { plate_top: top } }) {
     const side = table.half_width;
     const [left, right] = [from ?? -side, to ?? side];

@@ -1,5 +1,5 @@
 "use strict";
-// What the graphics processor runs. One program draws everything: bodies, the floor with its grid, and paths.
+// Programs for the graphics processor. One draws everything: bodies, the floor with its grid, and paths.
 
 const KIND = { body: 0, floor: 1, path: 2 };
 
@@ -80,7 +80,7 @@ void main() {
   color = vec4(pow(linear.rgb, vec3(1.0 / 2.2)), linear.a);
 }`;
 
-// Seen from the sun only depth counts.
+// From the sun, only depths are needed.
 const DEPTH_FRAGMENT = `#version 300 es
 precision lowp float;
 void main() {}`;

@@ -1,8 +1,8 @@
 "use strict";
-// The interactive view: a robot reaches for a ball, and one can walk around it. It wants the figure data
-// "grasp_playback" and an element, and is made of matrix.js, robot.js, meshes.js, shaders.js, renderer.js, camera.js,
+// The interactive view: a robot reaches for a ball, seen from any side. It needs the figure data "grasp_playback"
+// and an element, and consists of matrix.js, robot.js, meshes.js, shaders.js, renderer.js, camera.js,
 // gestures.js, playback.js, scene.js, curves.js, controls.js, address.js and this file, in this order in one script;
-// view.css is its style.
+// view.css is its style sheet.
 
 const COLOR_NAMES = [
   "background", "sky", "ground", "floor", "grid", "robot", "table", "ball", "plate", "target", "eye",
@@ -11,7 +11,7 @@ const COLOR_NAMES = [
 const HELP = "Drag or arrow keys: turn. Right button or Shift and drag, two fingers: move. Pinch, wheel (after a click) or + "
   + "and −: nearer, farther. Double-click: look at what is there. Space: play, pause. , and .: a step back, on. F: full screen. "
   + "Home: reset. The address keeps what is shown.";
-/** So much of the picture has to be seen before it plays by itself. */
+/** Share of the picture that must be visible before it plays automatically. */
 const IN_SIGHT = 0.6;
 /** Milliseconds without a change after which the address is written. */
 const SETTLED = 400;
@@ -20,7 +20,7 @@ const LEGEND = "Paths are solid up to the current time, faint after it; dots are
   + "the trunk may lean through. A plate goes on upwards beyond what is drawn; where its side has no dark edge, it goes on sideways "
   + "too.";
 
-/** Builds the view in an element. Where nothing can be drawn it says so, with a link to `data-still`. */
+/** Builds the view in an element. If it cannot be drawn, a note with a link to `data-still` replaces it. */
 function startView(element, data) {
   element.classList.add("view");
   const canvas = make("canvas", {
@@ -37,7 +37,7 @@ function startView(element, data) {
   window.policyAlignView = new View(element, canvas, renderer, data).handle();
 }
 
-/** Says why there is no picture. */
+/** A note with the reason why there is no picture. */
 function noteInstead(error, still) {
   const note = make("p", { class: "view-note" }, `The moving picture cannot be drawn here: ${error.message}. `);
   if (still) note.append("A ", make("a", { href: still }, "still picture"), " shows the same.");
@@ -49,7 +49,7 @@ class View {
     Object.assign(this, { element, canvas, playback: new Playback(data) });
     this.restful = matchMedia("(prefers-reduced-motion: reduce)");
     this.last = null;
-    // It plays once by itself, unless somebody has begun with it.
+    // It plays once automatically, unless the reader has already used it.
     this.fresh = true;
     this.build(renderer);
     this.camera = new Camera(this.scene.extent);
@@ -71,7 +71,7 @@ class View {
     this.ask();
   }
 
-  /** All that lives on the graphics processor, which may lose it. */
+  /** Builds everything on the graphics processor, which may lose it. */
   build(renderer) {
     this.renderer = renderer;
     this.scene = new Scene(renderer, this.playback);
@@ -108,7 +108,7 @@ class View {
     window.addEventListener("afterprint", () => this.print(false));
   }
 
-  /** Paper is light, and takes a still picture: browsers do not print what the graphics processor drew. */
+  /** On paper, a still picture in light colours: browsers do not print the output of the graphics processor. */
   print(starts) {
     this.element.classList.toggle("view-printing", starts);
     this.render();
@@ -116,7 +116,7 @@ class View {
     if (starts) this.canvas.after(make("img", { class: "view-paper", alt: "The robot and the ball", src: this.canvas.toDataURL() }));
   }
 
-  /** Plays from the beginning, once, for who sees it for the first time and has not asked for rest. */
+  /** Plays once from the beginning, when first seen, unless the reader prefers reduced motion. */
   begin() {
     if (!this.fresh || this.restful.matches) return;
     this.fresh = false;
@@ -124,7 +124,7 @@ class View {
     this.playback.play();
   }
 
-  /** Shows what an address tells, if it is about the view; what it tells wrongly is left as it is. */
+  /** Shows the state in an address that concerns the view; invalid values change nothing. */
   follow(hash) {
     const address = readAddress(hash);
     if (!address) return;
@@ -141,9 +141,9 @@ class View {
     this.ask();
   }
 
-  // What the reader, and tests, may do.
+  // Actions of the reader and of tests.
 
-  /** Draws, and when all has settled writes the address. */
+  /** Draws, and writes the address once changes have stopped. */
   changed() {
     this.fresh = false;
     this.ask();
@@ -173,7 +173,7 @@ class View {
     this.changed();
   }
 
-  /** So many samples on, or back; it stands still at a whole one. */
+  /** Moves by this many samples, forward or back, and pauses at a whole one. */
   step(samples) {
     const { sample } = this.playback;
     this.playback.pause();
@@ -185,7 +185,7 @@ class View {
     this.changed();
   }
 
-  /** The view on all of the screen, and back. */
+  /** Switches full screen on or off. */
   fillScreen() {
     if (document.fullscreenElement) document.exitFullscreen();
     else this.element.requestFullscreen?.().catch(() => {});
@@ -197,7 +197,7 @@ class View {
     this.changed();
   }
 
-  // Drawing: only when something was asked for, and only what can be seen.
+  // Drawing: only on request, and repeatedly only while the picture is visible.
 
   ask() {
     this.asked ??= requestAnimationFrame((now) => this.frame(now));
@@ -205,7 +205,7 @@ class View {
 
   frame(now) {
     this.asked = null;
-    // After a pause the first step is a usual one, not the pause's length.
+    // The first step after a pause has the usual length, not that of the pause.
     const seconds = this.last === null ? 1 / 60 : Math.min((now - this.last) / 1000, 0.25);
     if (this.playback.playing) this.playback.advance(seconds);
     const moving = this.camera.advance(seconds);
@@ -215,7 +215,7 @@ class View {
     if (again) this.ask();
   }
 
-  /** Draws the present state at once. */
+  /** Draws the current state at once. */
   render() {
     const { canvas, playback } = this;
     const ratio = Math.min(window.devicePixelRatio, 2);
@@ -226,14 +226,14 @@ class View {
     this.controls.show(playback);
   }
 
-  /** Where in the picture a place is: to the right and up, from −1 to 1. */
+  /** Position of a place in the picture: to the right and up, from −1 to 1. */
   project(place) {
     const m = this.camera.matrix(this.canvas.clientWidth / this.canvas.clientHeight);
     const row = (i) => dot([m[i], m[i + 4], m[i + 8], m[i + 12]], [...place, 1]);
     return [row(0) / row(3), row(1) / row(3)];
   }
 
-  /** The colours of the style sheet, as light: CSS has them as the eye sees them. */
+  /** The colours of the style sheet in linear light; CSS has them gamma-encoded. */
   readPalette() {
     const style = getComputedStyle(this.element);
     const color = (name) => {
@@ -243,7 +243,7 @@ class View {
     return Object.fromEntries(COLOR_NAMES.map((name) => [name, color(name)]));
   }
 
-  /** For tests and the curious. Angles in radians, places in metres. */
+  /** For tests and curious readers. Angles in radians, places in metres. */
   handle() {
     const { playback, camera } = this;
     return {

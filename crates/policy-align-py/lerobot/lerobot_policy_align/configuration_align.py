@@ -1,4 +1,4 @@
-"""What ``config.json`` of a policy of the type "align" holds."""
+"""Contents of ``config.json`` for a policy of the type "align"."""
 
 from __future__ import annotations
 
@@ -9,17 +9,18 @@ from lerobot.configs.types import NormalizationMode
 from lerobot.utils.constants import ACTION, OBS_STATE
 from policy_align import PolicyAlignError
 
-#: Why nothing trains here.
+#: The reason why this plug-in does not train.
 CLOSED_FORM = "policies of the type 'align' are learnt in closed form: `policy-align fit`, then `policy-align export --to lerobot`"
 
 
 @PreTrainedConfig.register_subclass("align")
 @dataclass
 class AlignConfig(PreTrainedConfig):
-    """``action``: "position", the state after one ``time_step``, as the robots and data sets of LeRobot have targets, or
+    """``action``: "position", the state after one ``time_step``, like the targets in LeRobot's robots and data sets, or
     "velocity", in units of the state per second. ``time_step``: seconds between two actions; that of the recordings if None.
-    ``outside`` of the data the velocity, of which a position is the sum with the state, is "zero" or "nan", or it is an "error"; "extrapolate" follows the learner there.
-    ``chunk_size``: actions of ``predict_action_chunk``, each a time step after the one before.
+    ``outside``: outside the data, the velocity is "zero" or "nan", "error" raises an error, and "extrapolate" uses the learner's
+    prediction; positions follow from the velocity. ``chunk_size``: number of actions of ``predict_action_chunk``, one
+    time step apart.
     """
 
     action: str = "position"
@@ -58,7 +59,7 @@ class AlignConfig(PreTrainedConfig):
         return None
 
     def validate_features(self) -> None:
-        """There is a state and an action; their dimensions are compared with the model's when that is read."""
+        """Checks that there are a state and an action. Reading the model compares their dimensions with its own."""
         for key, feature in {OBS_STATE: self.robot_state_feature, ACTION: self.action_feature}.items():
             if feature is None:
                 raise PolicyAlignError(f"there is no {key!r} among the features", "config.json", "a policy as it was exported")

@@ -1,4 +1,4 @@
-"""The policy: a model file of policy-align, carried as a tensor of bytes."""
+"""The policy: a model file of policy-align, stored as a tensor of bytes."""
 
 from __future__ import annotations
 
@@ -17,15 +17,15 @@ from torch import Tensor
 
 from .configuration_align import CLOSED_FORM, AlignConfig
 
-#: What helps where the model is missing or damaged.
+#: The hint if the model is missing or damaged.
 EXPORTED = "a folder that `policy-align export MODEL --to lerobot` has written, whole"
 
 
 class AlignPolicy(PreTrainedPolicy):
-    """Actions (B, n) at states ``observation.state`` (B, n), of a model with a context at ``observation.environment_state`` (B, p).
+    """Actions (B, n) at states ``observation.state`` (B, n), with a context also at ``observation.environment_state`` (B, p).
 
-    States are taken to double precision, and the actions are rounded to the states' precision: what ``act`` of the model
-    says, to the bit. Each action depends on the present observation alone.
+    States are converted to double precision, and the actions are rounded to the states' precision: they equal those of
+    the model's ``act`` bit for bit. Each action depends on the present observation alone.
     """
 
     config_class = AlignConfig
@@ -54,7 +54,7 @@ class AlignPolicy(PreTrainedPolicy):
         return self._as_tensor(np.stack(chunk, axis=1), batch)
 
     def reset(self) -> None:
-        """Nothing is remembered between observations."""
+        """Does nothing: the policy keeps no state between observations."""
 
     def forward(self, batch: dict[str, Tensor]) -> tuple[Tensor, dict[str, Any] | None]:
         raise NotImplementedError(CLOSED_FORM)
@@ -112,7 +112,7 @@ class AlignPolicy(PreTrainedPolicy):
         if trust.verdict != "good":
             verdict = trust.verdict.replace("_", " ")
             warnings.warn(f"{verdict}: {trust.findings[0]}", PolicyAlignWarning, stacklevel=2)
-        # Of any length: what is read now takes its place.
+        # The tensor may have any length: the call below fills it.
         self.model = torch.empty_like(tensor, device=self.model.device)
         super()._load_from_state_dict(state_dict, prefix, *others)
 

@@ -1,4 +1,4 @@
-"""What LeRobot does before and after the policy: devices and the batch dimension, no number is changed."""
+"""LeRobot's steps before and after the policy: devices and the batch dimension. They change no numbers."""
 
 from __future__ import annotations
 

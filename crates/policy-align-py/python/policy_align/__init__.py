@@ -4,9 +4,9 @@
 >>> model = SlopeGp().fit(trajectories, dt=0.05)                       # doctest: +SKIP
 >>> u, std = model.predict(X, return_std=True)                         # doctest: +SKIP
 
-``PolicyAlign``, ``SlopeGp`` and ``DirectGp`` are the learners, ``AutoGp`` takes the Gaussian process that the data
-support; ``Demonstrations`` holds recordings, of files or of memory; ``load`` reads any model file.
-Rows are samples everywhere.
+The learners are ``PolicyAlign``, ``SlopeGp``, ``DirectGp`` and ``AutoGp``, which selects the Gaussian process that
+the data support. ``Demonstrations`` holds recordings from files or memory. ``load`` reads any model file. Rows are
+samples everywhere.
 """
 
 from ._constraints import ConstraintStretch

@@ -1,4 +1,4 @@
-"""Array-likes as the C-ordered double precision that the native half takes."""
+"""Conversion of array-likes to the C-ordered double-precision arrays that the native half takes."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from ._errors import PolicyAlignError
 
 Floats = npt.NDArray[np.float64]
 
-# One object for all arrays of native doubles: comparing it costs a tenth of comparing types.
+# All arrays of native doubles share this object. Comparing it costs a tenth of comparing types.
 _DOUBLE = np.dtype(np.float64)
 
 
 def floats(values: Any, name: str) -> Floats:
-    """Real numbers of any type and layout; a C-ordered array of doubles is not copied."""
+    """Converts real numbers of any type and layout; a C-ordered array of doubles is not copied."""
     if type(values) is np.ndarray and values.dtype is _DOUBLE:
         # In C order and aligned.
         if values.flags.carray or (values.flags.c_contiguous and values.flags.aligned):
@@ -41,7 +41,7 @@ def floats(values: Any, name: str) -> Floats:
 def samples(
     values: Any, name: str, columns: int | None = None, of: str = "", channels: Callable[[], Iterable[str]] | None = None
 ) -> Floats:
-    """An (N, n) array, a row a sample; the columns of a DataFrame are called like the ``channels``, if these have names."""
+    """Converts to an (N, n) array, a row per sample. Columns of a DataFrame must equal the ``channels``, if named."""
     if channels is not None and hasattr(values, "columns"):
         found, known = [str(column) for column in values.columns], list(channels())
         if found != known and known != [f"x{k}" for k in range(len(known))]:
@@ -62,7 +62,7 @@ def samples(
 
 
 def episodes(values: Any, lengths: Sequence[int] | None, name: str) -> list[Any]:
-    """A list of movements: of a list, of a (K, N, n) array, or of a flat (M, n) array with lengths."""
+    """Returns a list of movements from a list, a (K, N, n) array, or a flat (M, n) array with lengths."""
     if lengths is not None:
         flat = samples(values, name)
         counts = [int(count) for count in lengths]
@@ -82,7 +82,7 @@ def episodes(values: Any, lengths: Sequence[int] | None, name: str) -> list[Any]
 
 
 def scaler_of(movements: Sequence[Floats]) -> str | None:
-    """What StandardScaler or MinMaxScaler has made of all channels, as rounding leaves it; None of recorded ones."""
+    """Describes how StandardScaler or MinMaxScaler has scaled all channels, up to rounding; None for unscaled channels."""
     rows = np.concatenate(movements) if len(movements) else np.empty((0, 0))
     if len(rows) < 3 or rows.shape[1] < 2:
         return None
@@ -90,7 +90,7 @@ def scaler_of(movements: Sequence[Floats]) -> str | None:
     for ends in ((0.0, 1.0), (-1.0, 1.0)):
         if np.allclose([low, high], np.reshape(ends, (2, 1)), rtol=0, atol=1e-12):
             return f"values from {ends[0]:g} to {ends[1]:g}"
-    # Rounding adds up over the rows.
+    # Rounding errors add up over the rows.
     if np.allclose(rows.mean(axis=0), 0, atol=1e-9) and np.allclose(rows.std(axis=0), 1, rtol=0, atol=1e-9):
         return "the mean 0 and the deviation 1"
     return None

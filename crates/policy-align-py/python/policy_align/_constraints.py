@@ -19,28 +19,28 @@ class ConstraintStretch:
     episode: str
     #: First and last sample.
     samples: tuple[int, int]
-    #: Seconds of both from the beginning of the movement.
+    #: Times of both, in seconds from the beginning of the movement.
     seconds: tuple[float, float]
-    #: What the movements call the constraint, where they do.
+    #: The recording's label of the constraint, if there is one.
     label: str | None
-    #: "constraint", "changing" (it bends), "nothing" or "unseen" (the policy does not want to move).
+    #: "constraint", "changing" (it bends or changes), "nothing" or "unseen" (the policy does not move there).
     acting: str
-    #: The link whose position or orientation is constrained, and which of both; None: the channels.
+    #: The constrained link, and "position" or "orientation"; None for a constraint on the channels.
     link: str | None
     quantity: str | None
-    #: A, rows of unit length, (k, n) or (k, 3) for a link; k is 0 unless it is a constraint.
+    #: A, rows of unit length, (k, n) or (k, 3) for a link; k is 0 without a constraint.
     A: Floats
-    #: b, (k): exactly 0 where it cannot be told from 0.
+    #: b, (k): exactly 0 if indistinguishable from 0.
     b: Floats
-    #: What is kept along each row, (k); NaN for an orientation or where b is not 0.
+    #: The constant value along each row, (k); NaN for an orientation, or if b is not 0.
     level: Floats
     #: Expected error of the rows, in degrees.
     angle: float
-    #: Logarithm of the likelihood of this constraint over that of none.
+    #: Logarithm of the likelihood ratio of this constraint to no constraint.
     evidence: float
-    #: Directions of the channels, (r, n), along which a further constraint would not show.
+    #: Directions in the channels, (r, n), along which a further constraint would not be detected.
     hidden: Floats
-    #: All that in words.
+    #: Description in words.
     text: str
 
     def __str__(self) -> str:
@@ -50,7 +50,7 @@ class ConstraintStretch:
 
 
 def stretches(document: str, dim: int) -> tuple[ConstraintStretch, ...]:
-    """Of the native half's JSON."""
+    """Parses the native half's JSON."""
     found = json.loads(document)
     return tuple(_stretch(entry, text, dim) for entry, text in zip(found["constraints"], found["in_words"], strict=True))
 

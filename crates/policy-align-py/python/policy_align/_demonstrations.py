@@ -1,4 +1,4 @@
-"""Recordings, of files or of memory."""
+"""Recordings from files or memory."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from ._digesting import Piece
 from ._errors import PolicyAlignError, PolicyAlignWarning
 from ._trust import Decision, Finding, decisions, findings
 
-#: What LeRobot calls the state.
+#: LeRobot's name for the state.
 _LEROBOT_STATE = "observation.state"
 
 _LISTS = {"state", "velocity", "context", "ignore", "units", "degrees", "unwrap"}
@@ -28,7 +28,7 @@ _LISTS = {"state", "velocity", "context", "ignore", "units", "degrees", "unwrap"
 
 @dataclass(frozen=True)
 class Check:
-    """What would be learnt from, and what gives reason for doubt: the program's ``check``."""
+    """The data for learning, and reasons for doubt, like the program's ``check``."""
 
     episodes: int
     samples: int
@@ -46,11 +46,11 @@ class Check:
 
 
 class Demonstrations:
-    """Movements with names, stamps and units.
+    """Movements with names, time stamps and units.
 
-    ``len`` is their number; iterating, or an index, gives (N, n) arrays of positions. Slices, lists of numbers or of names,
-    and masks give some of them as ``Demonstrations``, so that scikit-learn divides movements, not samples. Estimators
-    take it in the place of arrays.
+    ``len`` is the number of movements. Iteration and a single index yield (N, n) arrays of positions. Slices, masks, and
+    lists of numbers or names select movements as ``Demonstrations``, so that scikit-learn splits by movement, not by
+    sample. Estimators accept ``Demonstrations`` in place of arrays.
     """
 
     def __init__(
@@ -66,12 +66,13 @@ class Demonstrations:
         units: Sequence[str | None] | None = None,
         constraints: Sequence[str | Sequence[object] | None] | None = None,
     ) -> None:
-        """Of arrays: a list of (N, n), an array (K, N, n), or a flat (M, n) with ``lengths``.
+        """Takes arrays: a list of (N, n), an array (K, N, n), or a flat (M, n) with ``lengths``.
 
-        ``dt``: seconds between samples, or ``times``: the stamps of each movement. ``velocities``: as trajectories.
-        With one state more than velocities, as where the state after the last action was recorded too, that state is left out.
-        A DataFrame for each movement names the ``channels``. ``constraints``: the name of each movement's constraint, or
-        where it changes within a movement, a list of names or numbers, one a sample: they tell where constraints switch.
+        ``dt``: seconds between samples, or ``times``: the time stamps of each movement. ``velocities``: in the form of
+        ``trajectories``. If all movements have one state more than velocities, because the state after the last action was
+        recorded too, that state is left out. If every movement is a DataFrame, its columns name the ``channels``.
+        ``constraints``: the name of each movement's constraint or, if it changes within the movement, a list of names or
+        numbers, one per sample, which marks where constraints switch.
         """
         given = episodes(trajectories, lengths, "trajectories")
         if channels is None:
@@ -117,17 +118,18 @@ class Demonstrations:
 
         Options are the program's flags: ``state``, ``velocity``, ``context``, ``time``, ``episode``, ``constraint_column``,
         ``time_unit``, ``ignore``, ``dt``, ``units``, ``degrees``, ``unwrap``, ``nan``, ``sort``, ``split_gap``, ``trim_still``,
-        ``filter``, ``samples_are``, ``separator``, ``decimal``, ``topic``, ``format`` and ``trust``. What was noticed is
-        warned of, and stays in ``notes``.
+        ``filter``, ``samples_are``, ``separator``, ``decimal``, ``topic``, ``format`` and ``trust``. Findings are issued as
+        warnings, and are listed in ``notes``.
         """
         return cls._of_pieces([(os.fspath(path), len(paths) > 1, None) for path in paths], options)
 
     @classmethod
     def from_frame(cls, frame: Any, **options: Any) -> Demonstrations:
-        """Of a pandas or polars DataFrame, read as the CSV file it would make, with the options of ``read``.
+        """Reads a pandas or polars DataFrame like the CSV file that it would write, with the options of ``read``.
 
-        A column of lists of equal length becomes a column for each element, ``action_0`` of ``action``; options may name
-        either. As in LeRobot's files, ``observation.state`` is the state if it is such a column and ``state`` is not given.
+        A column of lists of equal length becomes one column per element, such as ``action_0`` for ``action``; options may
+        name either. As in LeRobot's files, ``observation.state`` is the state if it is such a column and ``state`` is not
+        given.
         """
         frame, lists = _without_lists(frame)
         for name in _LISTS & options.keys():
@@ -156,7 +158,7 @@ class Demonstrations:
         wraps: str = "auto",
         context: str | Sequence[str] = "auto",
     ) -> Check:
-        """All findings and decisions before learning; parameters as of the learners."""
+        """Returns all findings and decisions before learning; parameters as for the learners."""
         found = json.loads(self._native.check(preparing(integration, scale, smooth, jumps, wraps, context)))
         return Check(
             len(found["episodes"]),
@@ -175,18 +177,18 @@ class Demonstrations:
 
     @property
     def velocities(self) -> list[Floats] | None:
-        """Velocities of each movement, (N, n); None if some have none."""
+        """Velocities of each movement, (N, n); None if a movement has none."""
         found = [self._native.samples(k)[2] for k in range(len(self))]
         return None if any(one is None for one in found) else [one for one in found if one is not None]
 
     @property
     def times(self) -> list[Floats]:
-        """Stamps of each movement, (N), in seconds."""
+        """Time stamps of each movement, (N), in seconds."""
         return [self._native.samples(k)[0] for k in range(len(self))]
 
     @property
     def dt(self) -> float:
-        """The usual time between samples, in seconds."""
+        """The typical time between samples, in seconds."""
         return self._native.time_step
 
     @property
@@ -206,7 +208,7 @@ class Demonstrations:
 
     @property
     def notes(self) -> list[str]:
-        """What was found while reading."""
+        """Findings from reading."""
         return self._native.notes
 
     def __len__(self) -> int:
@@ -214,7 +216,7 @@ class Demonstrations:
 
     @property
     def shape(self) -> tuple[int]:
-        """The number of movements: what scikit-learn divides."""
+        """The number of movements, by which scikit-learn splits."""
         return (len(self),)
 
     @overload
@@ -245,7 +247,7 @@ class Demonstrations:
         return self._some([self._counted(k) for k in chosen])
 
     def _counted(self, k: Any) -> int:
-        """The place of movement k, which may count from the end."""
+        """The index of movement k, which may count from the end."""
         number = operator.index(k)
         place = number + len(self) if number < 0 else number
         if not 0 <= place < len(self):
@@ -306,7 +308,7 @@ def preparing(
     wraps: str,
     context: str | Sequence[str],
 ) -> dict[str, Any]:
-    """The native half's options of preparation."""
+    """Converts options of preparation for the native half."""
     factors = list((scale or {}).items())
     return {
         "integration": integration,
@@ -319,7 +321,7 @@ def preparing(
 
 
 def _without_lists(frame: Any) -> tuple[Any, dict[str, list[str]]]:
-    """The frame with a column for each element of columns of lists, and the names of these."""
+    """Replaces columns of lists by one column per element; also returns the names of these columns by original column."""
     lists: dict[str, list[str]] = {}
     if not hasattr(frame, "columns") or not len(frame):
         return frame, lists
@@ -352,12 +354,12 @@ def _restored(movements: tuple[Any, ...], origin: tuple[str, ...]) -> Demonstrat
 
 
 def _aligned(arrays: list[Any]) -> list[Any]:
-    """Engines hand over pickled arrays where they lie in a message, which may be at any byte."""
+    """Aligns arrays: engines pass pickled arrays at their place in a message, which may begin at any byte."""
     return [None if array is None else floats(array, "the pickle") for array in arrays]
 
 
 def _columns(given: list[Any]) -> list[str] | None:
-    """Names of the columns, where every movement is a DataFrame; they must be alike."""
+    """The column names if every movement is a DataFrame; they must be the same for all."""
     if not given or not all(hasattr(values, "columns") for values in given):
         return None
     names = [str(name) for name in given[0].columns]
@@ -379,7 +381,7 @@ def _one(convert: Any, values: Any, name: str, k: int) -> Floats:
 
 
 def _labels(names: Any, count: int, k: int) -> list[str] | None:
-    """The name at each of ``count`` samples of movement k, of one for all or of one each."""
+    """The name at each of the ``count`` samples of movement k, from one name for all or one per sample."""
     if names is None:
         return None
     if isinstance(names, str) or not isinstance(names, Iterable):
@@ -411,7 +413,7 @@ def _same_length(given: Sequence[Any], expected: int, name: str, what: str) -> N
 
 
 def reading(options: Mapping[str, Any]) -> tuple[str, bool]:
-    """Options of ``Demonstrations.read`` as the native half takes them."""
+    """Converts options of ``Demonstrations.read`` for the native half."""
     plain = {name: value for name, value in options.items() if value is not None}
     if "format" in plain:
         plain["as"] = plain.pop("format")

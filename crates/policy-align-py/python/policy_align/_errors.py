@@ -4,10 +4,10 @@ from __future__ import annotations
 
 
 class PolicyAlignError(ValueError):
-    """What is wrong, where, and what helps: the program's three lines.
+    """The fault, its place and a hint: the three lines of the program's errors.
 
-    ``what``, ``place``, ``hint``: the lines. ``code``: the name of an error of reading, as "NotFinite".
-    ``trajectory``, ``sample``, ``column``: where it is, counted from 0, as far as that is known; else None.
+    ``what``, ``place``, ``hint``: these lines. ``code``: the name of a reading error, such as "NotFinite".
+    ``trajectory``, ``sample``, ``column``: indices of the fault, counted from 0, where known; else None.
     """
 
     def __init__(
@@ -37,8 +37,8 @@ class PolicyAlignError(ValueError):
 
 
 class NotFittedError(ValueError, AttributeError):
-    """An estimator was used before ``fit``; as scikit-learn's error of this name."""
+    """An estimator was used before ``fit``; like scikit-learn's error of this name."""
 
 
 class PolicyAlignWarning(UserWarning):
-    """What gives reason to doubt recordings or a policy."""
+    """A reason to doubt recordings or a policy."""

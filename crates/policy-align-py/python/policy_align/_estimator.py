@@ -1,4 +1,4 @@
-"""What scikit-learn expects of an estimator, without scikit-learn."""
+"""The interface that scikit-learn expects of an estimator, without scikit-learn."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from typing import Any, Self
 class Estimator:
     """``get_params``, ``set_params``, ``repr`` and tags: ``clone``, ``GridSearchCV`` and ``Pipeline`` work with these.
 
-    ``__init__`` stores every parameter untouched under its name, and does nothing else; ``fit`` looks at them.
+    ``__init__`` stores every parameter untouched under its name, and does nothing else; ``fit`` checks them.
     """
 
     def _store(self, given: dict[str, Any]) -> None:
-        """The last word of every ``__init__``: ``self._store(locals())``."""
+        """Stores the parameters; every ``__init__`` ends with ``self._store(locals())``."""
         for name in self._parameters():
             setattr(self, name, given[name])
 
@@ -27,7 +27,7 @@ class Estimator:
         return {name: getattr(self, name) for name in self._parameters()}
 
     def set_params(self, **params: Any) -> Self:
-        """Changes parameters; what was learnt stays until the next ``fit``."""
+        """Changes parameters; the learnt policy stays until the next ``fit``."""
         known = self._parameters()
         for name, value in params.items():
             if name not in known:

@@ -1,4 +1,4 @@
-"""Small recordings to try things with."""
+"""Small example files."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ _FOLDER = pathlib.Path(__file__).parent / "examples"
 
 
 def example(name: str) -> pathlib.Path:
-    """The path of an example file, which comes with the package, as ``Demonstrations.read(example("toy"))``.
+    """The path of an example file in the package, for use as in ``Demonstrations.read(example("toy"))``.
 
     ``"toy"``: 40 movements of a point that slides down a bowl, along rails that change. ``"rails"``: a column names the
-    constraint. ``"goals"``: every movement has another goal, a context. ``"wall"``: a constraint, for ``rollout``.
+    constraint. ``"goals"``: every movement has a different goal, a context. ``"wall"``: a constraint, for ``rollout``.
     ``"notebook"``: a Jupyter notebook. For any other name a ``PolicyAlignError`` lists the names.
     """
     files = {path.stem: path for path in _FOLDER.iterdir()}

@@ -1,4 +1,4 @@
-"""What the learners share."""
+"""The common base of the learners."""
 
 from __future__ import annotations
 
@@ -25,23 +25,23 @@ from ._estimator import Estimator
 from ._rollout import Constraint, Path, follow
 from ._trust import Decision, Trust, decisions, findings
 
-#: Values of a context by name, or in the order of ``context_names_``; none for a policy of the state alone.
+#: Values of a context by name, or in the order of ``context_names_``; None for a policy that depends on the state alone.
 Context = Mapping[str, float] | Sequence[float] | Floats | None
 
-#: What ``predict`` answers where there are no data.
+#: The answer of ``predict`` outside the data.
 Outside = Literal["zero", "nan", "error", "extrapolate"]
 
 
 class Learner(Estimator):
-    """fit, predict, and what was learnt."""
+    """The methods and results that all learners share."""
 
     #: The name of the learner in a model file.
     _learner: ClassVar[str]
     _fitted: _native.Fitted | None = None
-    #: What ``fit`` was given: not part of the model.
+    #: The movements given to ``fit``; not part of the model.
     _learnt_from: Demonstrations | None = None
 
-    # Parameters that every learner has.
+    # Parameters of every learner; only ``robot`` is missing in PolicyAlign.
     integration: str
     scale: dict[str, float] | None
     smooth: str | int
@@ -70,14 +70,16 @@ class Learner(Estimator):
         n_jobs: int | None = None,
     ) -> None:
         """``integration``: "auto", "velocity" (recorded velocities are used) or "displacement" (they are ignored). ``scale``:
-        factors of channels' units. ``smooth``, of positions: "auto", "off", a window of samples (9) or of seconds ("0.2s").
-        ``jumps``: "auto" cuts movements where one step is far too long, "keep" does not. ``wraps``: with "auto" angles that
-        jump by a whole turn go on instead and quaternions keep one sign, with "keep" they stay. ``context``: names of the
-        channels that a movement depends on and that are constant during it, such as a goal; "auto" finds them by their
-        names, "none" takes none. ``max_rows``: samples on which Gaussian processes are selected, at most.
-        ``inducing``: samples that represent all if more are recorded; 0 drops the others. ``robot``: a URDF whose joints are named like the
-        channels; constraints of the links at its ends are tried, and its mass matrix as the metric in which constraints are at right angles. ``random_state``: the seed,
-        a whole number; None is 1, like the program; a NumPy generator supplies one. ``n_jobs``: threads, None or -1 for all; results do not depend on it.
+        factors for the channels' units. ``smooth``: smoothing of positions, "auto", "off", or a window in samples (9) or
+        seconds ("0.2s"). ``jumps``: "auto" cuts movements where one step is far too long, "keep" does not. ``wraps``: "auto"
+        unwraps angles that jump by a whole turn and gives quaternions consistent signs, "keep" leaves both unchanged.
+        ``context``: names of the channels that a movement depends on and that are constant during it, such as a goal; "auto"
+        finds them by their names, "none" uses none. ``max_rows``: the largest number of samples on which Gaussian processes
+        are selected. ``inducing``: number of samples that represent all samples if more are recorded; 0 drops the others.
+        ``robot``: a URDF whose joints have the channels' names; the fit tries constraints on the links at its ends, and its
+        mass matrix as the metric in which constraints are orthogonal. ``random_state``: the seed, an integer; None means 1,
+        as in the program; a NumPy generator supplies one. ``n_jobs``: number of threads, None or -1 for all; results do not
+        depend on it.
         """
         self._store(locals())
 
@@ -95,9 +97,9 @@ class Learner(Estimator):
         """Learns from movements: a list of (N, n) arrays or DataFrames, an array (K, N, n), a flat (M, n) with
         ``lengths``, or ``Demonstrations``.
 
-        ``dt``: seconds between samples, or ``times``: the stamps of each movement. ``velocities``, as X: recorded ones,
-        better than differences of positions. ``constraints``: names as of ``Demonstrations``, which tell where constraints
-        switch. ``y`` is ignored. Ctrl-C ends it.
+        ``dt``: seconds between samples, or ``times``: the time stamps of each movement. ``velocities``: recorded velocities
+        in the form of X, better than differences of positions. ``constraints``: names as for ``Demonstrations``, which mark
+        where constraints switch. ``y`` is ignored. Ctrl-C ends the fit.
         """
         threads = _threads(self.n_jobs)
         demonstrations = _demonstrations(X, dt, times, velocities, lengths, constraints)
@@ -115,12 +117,13 @@ class Learner(Estimator):
         unfinished: str | os.PathLike[str] | None = None,
         **options: Any,
     ) -> Self:
-        """Learns from files that are too large to be held together, or that several machines read.
+        """Learns from files that are too large to be held in memory together, or that several machines read.
 
-        Files of ``at_once``, evenly spread, are read together; every other file is read alone, and means of its samples stay. A text that
-        is large counts as pieces of whole movements. ``map`` does that, as the builtin function: that of a pool of processes, or of an
-        engine (``policy_align.dask.fit``), gives the same model. What it is given can be pickled. With a file ``unfinished``, which is made
-        and in the end removed, a call that was interrupted goes on when it is made again: what ``map`` had yielded is kept. ``options`` as of ``Demonstrations.read``; the
+        Evenly spread files of at most ``at_once`` in total are read together. Every other file is read alone and reduced to
+        means of its samples. Large text files are divided into pieces of whole movements. ``map`` applies the reduction, like
+        the builtin function; the ``map`` of a process pool or of an engine (``policy_align.dask.fit``) yields the same model.
+        Its arguments can be pickled. ``unfinished``: a file that keeps the results of ``map``, so that the same call continues
+        after an interruption; the call creates it and removes it at the end. ``options`` as for ``Demonstrations.read``. The
         program's ``fit --at-once`` does the same.
         """
         threads = _threads(self.n_jobs)
@@ -165,11 +168,12 @@ class Learner(Estimator):
     def predict(
         self, X: Any, return_std: bool = False, *, context: Context = None, outside: Outside = "zero"
     ) -> Floats | tuple[Floats, Floats]:
-        """The action at each state, (N, n), in units of the state per second; with ``return_std`` also the standard
-        deviation of every component, (N, n). ``context``: where the policy depends on one, its values by name or in order.
+        """Returns the action at each state, (N, n), in units of the state per second; with ``return_std`` also the standard
+        deviation of each component, (N, n). ``context``: values by name or in order, if the policy depends on a context.
 
-        ``outside`` of the data, where ``supports(X)`` is False, the action is "zero", "nan" or an "error", and the standard
-        deviation NaN: the program's ``--outside``. "extrapolate" gives what the learner says there, without asking.
+        ``outside``: like the program's ``--outside``, the answer outside the data, where ``supports(X)`` is False. The action
+        is "zero" or "nan", with NaN as the standard deviation; "error" raises an error; "extrapolate" returns the learner's
+        prediction.
         """
         fitted = self._in(context)
         states = samples(X, "X", fitted.dim, type(self).__name__, lambda: self.feature_names_in_)
@@ -198,7 +202,7 @@ class Learner(Estimator):
         return actions if deviation is None else (actions, deviation)
 
     def act(self, x: Any, *, context: Context = None, outside: Outside = "zero") -> Floats:
-        """The action (n) at one state (n); arguments as of ``predict``."""
+        """Returns the action (n) at one state (n); arguments as for ``predict``."""
         state = floats(x, "x")
         if state.ndim != 1:
             raise PolicyAlignError(f"Expected 1D array, got {state.ndim}D array instead", "x", "predict(X) for several states")
@@ -206,7 +210,7 @@ class Learner(Estimator):
         return action
 
     def potential(self, X: Any, *, context: Context = None) -> Floats:
-        """The potential at each state, (N), in units of the state squared per second; the policy is downhill."""
+        """Returns the potential at each state, (N), in units of the state squared per second; the policy points downhill."""
         fitted = self._in(context)
         found = fitted.potential(samples(X, "X", fitted.dim, type(self).__name__, lambda: self.feature_names_in_))
         if found is None:
@@ -214,12 +218,12 @@ class Learner(Estimator):
         return found
 
     def support(self, X: Any, *, context: Context = None) -> Floats:
-        """How much the demonstrations support each state, from 0 to 1, (N)."""
+        """Returns the support of each state by the demonstrations, from 0 to 1, (N)."""
         fitted = self._in(context)
         return fitted.support(samples(X, "X", fitted.dim, type(self).__name__, lambda: self.feature_names_in_))
 
     def supports(self, X: Any, *, context: Context = None) -> npt.NDArray[np.bool_]:
-        """Whether that is enough to act on, (N)."""
+        """Returns whether the support of each state is enough to act on, (N)."""
         fitted = self._in(context)
         return fitted.supports(samples(X, "X", fitted.dim, type(self).__name__, lambda: self.feature_names_in_))
 
@@ -236,9 +240,9 @@ class Learner(Estimator):
         """Follows the policy from a state (n), under constraints that need not have been demonstrated.
 
         ``constraint``: A with A u = 0, rows (k, n) or one row (n); a function A(x, t); or the name of a file of
-        constraints, as the program reads it. ``limits``: a robot's URDF, whose joints have the channels' names.
-        ``seconds``: three times the longest demonstration if not given; ``step``: between two samples of the path.
-        ``context``: as of ``predict``.
+        constraints, in the program's format. ``limits``: a robot's URDF, whose joints have the channels' names.
+        ``seconds``: the duration, by default three times the longest demonstration. ``step``: seconds between two samples of
+        the path. ``context``: as for ``predict``.
         """
         channels = tuple(map(str, self.feature_names_in_))
         return follow(self._in(context), x0, seconds, step, constraint, limits, channels)
@@ -246,10 +250,10 @@ class Learner(Estimator):
     def plot(
         self, ax: Any = None, *, dims: tuple[int | str, int | str] = (0, 1), arrows: int = 20, context: Context = None
     ) -> Any:
-        """Draws the policy in two channels with matplotlib, all others at their median; no arrow outside the data.
+        """Draws the policy in two channels with matplotlib, all others at their median; no arrows outside the data.
 
-        ``ax``: axes to draw on, new ones if None; they are returned. ``dims``: channels across and up, by number or name;
-        ``arrows``: so many in each direction. ``context``: as of ``predict``.
+        ``ax``: axes to draw on, new ones if None; they are returned. ``dims``: the horizontal and vertical channel, by number
+        or name. ``arrows``: number of arrows in each direction. ``context``: as for ``predict``.
         """
         names = list(map(str, self.feature_names_in_))
         across, up = (_channel(dim, names) for dim in dims)
@@ -270,7 +274,7 @@ class Learner(Estimator):
         return ax
 
     def _repr_html_(self) -> str:
-        """For notebooks: the parameters, and how far to trust what was learnt."""
+        """HTML for notebooks: the parameters, and the trust in the learnt policy."""
         head = f"<code>{escape(repr(self))}</code>"
         return head if self._fitted is None else f"{head}<br>{self.trust_._repr_html_()}"
 
@@ -284,9 +288,9 @@ class Learner(Estimator):
         velocities: Any = None,
         lengths: Sequence[int] | None = None,
     ) -> float:
-        """1 − slope error on other movements: 1 explains every one, 0 is as good as standing still.
+        """Returns 1 − slope error on other movements: 1 explains all of them, 0 is as good as standing still.
 
-        Arguments as of ``fit``; without ``dt`` and ``times`` the time step is that of what was learnt from.
+        Arguments as for ``fit``; without ``dt`` and ``times`` the time step is that of the training data.
         """
         fitted = self._needed()
         held_out = self._others(X, dt, times, velocities, lengths)
@@ -304,10 +308,10 @@ class Learner(Estimator):
         robot: str | os.PathLike[str] | None = None,
         links: Sequence[str] = (),
     ) -> tuple[ConstraintStretch, ...]:
-        """The constraints that acted on movements, which may be those learnt from: stretch by stretch.
+        """Estimates the constraints on each stretch of movements, which may be the training data.
 
-        Arguments as of ``score``. ``robot``: a URDF whose joints are the channels, by name; what its ``links`` keep, or if
-        none is named the last of each chain, is looked for beside the channels.
+        Arguments as for ``score``. ``robot``: a URDF whose joints have the channels' names. Constraints on its ``links``, by
+        default the last link of each chain, are then tested besides those on the channels.
         """
         fitted = self._needed()
         movements = self._others(X, dt, times, velocities, lengths)
@@ -316,7 +320,7 @@ class Learner(Estimator):
 
     @property
     def constraints_(self) -> tuple[ConstraintStretch, ...]:
-        """The constraints that acted on the movements of ``fit``, in the channels. A model file does not hold these movements."""
+        """The constraints on the movements given to ``fit``, in the channels. A model file does not contain these movements."""
         self._needed()
         if self._learnt_from is None:
             hint = "constraints(X), with the movements"
@@ -324,20 +328,20 @@ class Learner(Estimator):
         return self.constraints(self._learnt_from)
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Writes a model file, the same as the program's, wholly or not at all."""
+        """Writes a model file, the same as the program's, completely or not at all."""
         self._needed().save(path)
 
     def save_lerobot(self, folder: str | os.PathLike[str]) -> None:
         """Writes the folder that LeRobot reads as a policy with the plug-in ``lerobot_policy_align``, the same as the program's
-        ``export --to lerobot``; it is made if it is not there.
+        ``export --to lerobot``; creates the folder if it does not exist.
         """
         self._needed().save_lerobot(folder)
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> Self:
-        """Reads a model file that this learner, or the program with it, has written.
+        """Reads a model file written by this learner, or by the program with it.
 
-        The file tells what was learnt, not the parameters; these have their defaults, but for the seed.
+        The file contains the learnt policy, not the parameters, which have their defaults except for the seed.
         """
         fitted = _native.Fitted.load(path)
         found = fitted.learner
@@ -348,18 +352,18 @@ class Learner(Estimator):
 
     @property
     def trust_(self) -> Trust:
-        """How far to trust the policy."""
+        """The verdict on the policy, with findings and numbers."""
         trust = self._about["trust"]
         return Trust(trust["verdict"], findings(trust["findings"]), trust["numbers"])
 
     @property
     def decisions_(self) -> tuple[Decision, ...]:
-        """What was decided for the user."""
+        """The decisions that were made for the user."""
         return decisions(self._about["decisions"])
 
     @property
     def left_out_(self) -> tuple[tuple[str, str], ...]:
-        """Names of the movements that were not learnt from, and why."""
+        """Names of the movements that were left out of the fit, and the reasons."""
         return tuple((entry["episode"], entry["why"]) for entry in self._about["data"]["left_out"])
 
     @property
@@ -374,7 +378,7 @@ class Learner(Estimator):
 
     @property
     def context_names_(self) -> list[str]:
-        """Names of what the policy depends on besides the state; empty without a context."""
+        """Names of the context channels, on which the policy depends besides the state; empty without a context."""
         return self._needed().context
 
     @property
@@ -410,7 +414,7 @@ class Learner(Estimator):
         return self._fitted
 
     def _in(self, context: Context) -> _native.Fitted:
-        """What was learnt, in a context where it depends on one."""
+        """The learnt policy, in the given context if it depends on one."""
         fitted = self._needed()
         names = fitted.context
         if context is None:
@@ -441,7 +445,7 @@ class Learner(Estimator):
     def _others(
         self, X: Any, dt: float | None, times: Iterable[Any] | None, velocities: Any, lengths: Sequence[int] | None
     ) -> Demonstrations:
-        """Other movements, in the time step of those learnt from unless theirs is given."""
+        """Other movements, with the time step of the training data unless theirs is given."""
         if dt is None and times is None and not isinstance(X, Demonstrations):
             dt = self.time_step_
         return _demonstrations(X, dt, times, velocities, lengths)
@@ -495,7 +499,7 @@ def _text(path: str | os.PathLike[str] | None) -> str | None:
 
 
 def _seed(random_state: Any) -> int:
-    """The seed that scikit-learn's ``random_state`` means here, where the same data give the same policy."""
+    """Converts scikit-learn's ``random_state`` to a seed; None is a fixed seed, so that the same data give the same policy."""
     if random_state is None:
         return 1
     if isinstance(random_state, np.random.Generator):
@@ -512,7 +516,7 @@ def _seed(random_state: Any) -> int:
 
 
 def _channel(dim: int | str, names: list[str]) -> int:
-    """A channel by number or name."""
+    """The index of a channel, given by number or name."""
     if isinstance(dim, str) and dim in names:
         return names.index(dim)
     if isinstance(dim, int) and -len(names) <= dim < len(names):

@@ -14,11 +14,11 @@ from ._learner import Learner
 
 
 class PolicyAlign(Learner):
-    """Local potentials brought to one level, and LWPR: the method of Howard et al.
+    """Alignment of local potentials, and LWPR: the method of Howard et al.
 
-    ``bandwidth``: "auto" (by held-out movements), "narrow", "medium", "wide" or σ². ``init_d``: "auto", or one over the
-    squared width of receptive fields. ``folds``: parts of the movements that are left out in turn. ``max_rows``: samples
-    that the Gaussian process learns from which judges the policy. Others as of SlopeGp.
+    ``bandwidth``: "auto" (selected on held-out movements), "narrow", "medium", "wide" or σ². ``init_d``: "auto", or one
+    over the squared width of receptive fields. ``folds``: number of parts that cross-validation leaves out in turn.
+    ``max_rows``: number of samples for the Gaussian process that judges the policy. Other parameters as for SlopeGp.
     """
 
     _learner = "policy_align"
@@ -47,18 +47,18 @@ class PolicyAlign(Learner):
 
     @property
     def kept_(self) -> npt.NDArray[np.intp]:
-        """Numbers of the movements that hang together, of those learnt from."""
+        """Indices of the movements in the aligned group, among those learnt from."""
         return np.array(self._about["kept"], dtype=np.intp)
 
     @property
     def sigma_squared_(self) -> float | None:
-        """σ² of the responsibilities, in units of the scaled state squared; None in model files that do not tell."""
+        """σ² of the responsibilities, in units of the scaled state squared; None if the model file has none."""
         found: float | None = self._about["trust"]["numbers"]["aligned"].get("sigma_squared")
         return found
 
     @property
     def discarded_(self) -> npt.NDArray[np.intp]:
-        """Numbers of all others."""
+        """Indices of all other movements."""
         return np.setdiff1d(np.arange(self._about["data"]["episodes"]), self.kept_)
 
 
@@ -80,9 +80,9 @@ class DirectGp(Learner):
 
 
 class AutoGp(Learner):
-    """SlopeGp or DirectGp, as the data say: the program's default.
+    """SlopeGp or DirectGp, selected by the data: the program's default.
 
-    ``reading``: "free" or "constrained" if you know, else None. Other parameters as of SlopeGp.
+    ``reading``: "free" or "constrained" if known, else None. Other parameters as for SlopeGp.
     """
 
     _learner = "auto"
@@ -108,9 +108,9 @@ class AutoGp(Learner):
 
 
 def load(path: str | os.PathLike[str] | BinaryIO) -> PolicyAlign | SlopeGp | DirectGp | AutoGp:
-    """Reads any model file, of this package or of the program, as the estimator that learns such models.
+    """Reads any model file of this package or the program as the estimator that learns such models.
 
-    ``path`` may also be a file that is open for reading bytes, as ``io.BytesIO``.
+    ``path`` may also be a file opened in binary mode, such as ``io.BytesIO``.
     """
     known: dict[str, Any] = {one._learner: one for one in (PolicyAlign, SlopeGp, DirectGp, AutoGp)}
     if isinstance(path, str | os.PathLike):

@@ -19,11 +19,11 @@ Constraint = Any
 
 @dataclass(frozen=True)
 class Path:
-    """A policy that was followed.
+    """The path of a roll-out.
 
-    ``times`` (N), seconds; ``states`` and ``velocities`` (N, n), the latter what the constraint left of the action;
-    ``stop``: "at rest", "left the data", "time" or a joint's limit; ``broken_by``: by how much a constraint was broken
-    at most, None without constraints. ``channels``: names of the state's dimensions.
+    ``times`` (N), in seconds. ``states`` and ``velocities`` (N, n); a velocity is the part of the action that the
+    constraint allows. ``stop``: "at rest", "left the data", "time" or a joint's limit. ``broken_by``: the largest
+    violation of a constraint, None without constraints. ``channels``: names of the state's dimensions.
     """
 
     times: Floats
@@ -37,7 +37,7 @@ class Path:
         return len(self.times)
 
     def to_frame(self) -> Any:
-        """A pandas DataFrame: ``t``, the channels, and ``v`` with each channel's name for its velocity."""
+        """A pandas DataFrame: ``t``, the channels, and their velocities, named ``v`` plus the channel's name."""
         import pandas as pd
 
         states = {name: self.states[:, k] for k, name in enumerate(self.channels)}
@@ -54,7 +54,7 @@ def follow(
     limits: str | os.PathLike[str] | None,
     channels: tuple[str, ...],
 ) -> Path:
-    """The native roll-out with a user's arguments."""
+    """Runs the native roll-out with a user's arguments."""
     start = floats(start, "x0")
     if start.ndim != 1:
         raise PolicyAlignError(f"Expected 1D array, got {start.ndim}D array instead", "x0", "one state, (n,)")

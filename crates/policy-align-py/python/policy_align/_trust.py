@@ -15,7 +15,7 @@ _WORDS = {
 
 @dataclass(frozen=True)
 class Decision:
-    """Something that was decided for the user, who can override it."""
+    """A decision that was made for the user, who can override it."""
 
     what: str
     value: str
@@ -27,7 +27,7 @@ class Decision:
 
 @dataclass(frozen=True)
 class Finding:
-    """One reason to doubt: ``verdict`` is "good" (a remark), "doubtful" or "do_not_use"."""
+    """One reason for doubt: ``verdict`` is "good" (a remark), "doubtful" or "do_not_use"."""
 
     verdict: str
     what: str
@@ -39,10 +39,10 @@ class Finding:
 
 @dataclass(frozen=True)
 class Trust:
-    """How far to trust a policy, found without knowing the truth.
+    """The verdict on a policy, found without knowing the true policy.
 
-    ``verdict``: the worst of the ``findings``, and "good" if there is none. ``numbers``: what it rests on, by the names
-    of the model file (docs/model-file.md).
+    ``verdict``: the worst of the ``findings``, "good" without any. ``numbers``: the numbers behind it, named as in the
+    model file (docs/model-file.md).
     """
 
     verdict: str
@@ -60,10 +60,10 @@ class Trust:
 
 
 def decisions(found: list[dict[str, str]]) -> tuple[Decision, ...]:
-    """Of the model's document."""
+    """Converts the decisions of the native half's document."""
     return tuple(Decision(entry["what"], entry["value"], entry["why"]) for entry in found)
 
 
 def findings(found: list[dict[str, str]]) -> tuple[Finding, ...]:
-    """Of the model's document."""
+    """Converts the findings of the native half's document."""
     return tuple(Finding(entry["verdict"], entry["what"], entry["next"]) for entry in found)

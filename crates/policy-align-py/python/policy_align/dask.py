@@ -26,9 +26,9 @@ def fit(
     at_once: str = "256MB",
     **options: Any,
 ) -> Learner:
-    """Learns from files that all workers see: they read the files and pieces that are not held together (``Learner.fit_files``), this process
-    the others. The work of a worker that dies is done by another; the model is that of one process. ``learner``: AutoGp() if not given.
-    ``options`` as of ``Learner.fit_files``, such as ``unfinished``.
+    """Learns from files that all workers can read. The workers read the files and pieces that are read alone (``Learner.fit_files``), this
+    process the others. If a worker dies, another does its work. The model is the same as with one process. ``learner``: by default AutoGp().
+    ``options`` as for ``Learner.fit_files``, such as ``unfinished``.
     """
 
     import distributed

@@ -65,7 +65,7 @@ pub(crate) struct Export {
     follow: RollOutFlags,
 }
 
-/// What a policy can be written as.
+/// Format of an exported policy.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Target {
     /// One file of C99
