@@ -404,6 +404,20 @@ fn a_path_can_be_read_again_and_keeps_its_constraint() {
     assert!(ran.out.contains("1 episode") && ran.out.contains("with velocities"), "{} {}", ran.out, ran.err);
 }
 
+/// A roll-out that goes on after its constraint has ended says so; one that the constraint outlasts does not.
+#[test]
+fn the_end_of_constraints_is_named() {
+    let file = |name: &str, until: f64| {
+        std::fs::write(folder().join(name), format!("[[constraint]]\nnormal = [1, 0]\nuntil = {until}\n")).unwrap();
+    };
+    file("until-half.toml", 0.5);
+    file("until-late.toml", 1e4);
+    let short = run("rollout toy.json --from 1.5,1 --constraint until-half.toml");
+    assert!(short.out.contains("satisfied exactly; free from 0.5 s on"), "{}{}", short.out, short.err);
+    let long = run("rollout toy.json --from 1.5,1 --constraint until-late.toml");
+    assert!(long.out.contains("satisfied exactly\n"), "{}{}", long.out, long.err);
+}
+
 #[test]
 fn roll_outs_for_viewers_are_those_of_rollout() {
     assert_eq!(

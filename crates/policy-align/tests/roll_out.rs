@@ -99,6 +99,12 @@ fn it_agrees_with_the_teachers_roll_out_under_a_constraint() {
 #[test]
 fn constraints_hold_at_their_times_only() {
     let set = constraints("[[constraint]]\nnormal = [[2, 0], [0, 1]]\nfrom = 2.5\nuntil = 7.25\n");
+    assert_eq!(set.ends(), Some(7.25));
+    assert_eq!(
+        constraints("[[constraint]]\nnormal = [1, 0]\n[[constraint]]\nnormal = [0, 1]\nuntil = 1\n").ends(),
+        None
+    );
+    assert_eq!(ConstraintSet::default().ends(), None);
     let path = follow(
         &RollOut { constraints: set, seconds: Some(20.0), step: Some(0.5), ..RollOut::default() },
         &dvector![1.0, 1.0],

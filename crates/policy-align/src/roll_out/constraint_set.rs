@@ -59,6 +59,11 @@ impl ConstraintSet {
         self.parts.is_empty()
     }
 
+    /// Time from which on no constraint acts, in seconds. `None` if one acts without end, or the set is empty.
+    pub fn ends(&self) -> Option<f64> {
+        self.parts.iter().map(|part| part.until).reduce(f64::max).filter(|end| end.is_finite())
+    }
+
     /// Whether a constraint is a function, which may change at any time.
     pub(crate) fn changes(&self) -> bool {
         self.parts.iter().any(|part| matches!(part.kind, Kind::Function(_)))

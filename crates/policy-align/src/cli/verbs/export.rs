@@ -158,7 +158,8 @@ impl Export {
             let what = "no start was found within the data";
             return Err(Failure::new(Exit::Refused, what, displayed(&self.model), "--from with a recorded state"));
         }
-        let paths = starts.iter().map(|start| followed(&flags, model, start, &list(start.iter().copied())));
+        let roll_out = flags.roll_out(model)?;
+        let paths = starts.iter().map(|start| followed(&roll_out, model, start, &list(start.iter().copied())));
         let paths = paths.collect::<Result<Vec<_>, _>>()?;
         let matching = write_paths(output, model, &paths, &self.robot)?;
         if session.json {

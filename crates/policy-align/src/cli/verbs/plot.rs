@@ -95,9 +95,10 @@ impl Plot {
             let recordings = read(session, &self.files, &reading)?;
             (recordings.episodes.into_iter().map(|episode| episode.positions).collect(), vec![])
         };
+        let roll_out = flags.roll_out(&model)?;
         let paths = self.rollout.iter().map(|from| {
             let start = DVector::from_vec(numbers(from, "--rollout")?);
-            Ok(followed(&flags, &model, &start, from)?.states)
+            Ok(followed(&roll_out, &model, &start, from)?.states)
         });
         let title = self
             .title
@@ -112,18 +113,18 @@ impl Plot {
         let mut lines = Lines::default();
         let [across, up] = dims.map(|dim| &model.state[dim].name);
         lines.written(&self.output, &format!("{across} across, {up} up"));
-        Ok(Output::done(lines.next(&self.next(session, &model, &flags))))
+        Ok(Output::done(lines.next(&self.next(session, &model, &roll_out))))
     }
 
     /// A command for a roll-out with the same flags, from a start that succeeds.
-    fn next(&self, session: &Session, model: &Model, flags: &RollOutFlags) -> String {
+    fn next(&self, session: &Session, model: &Model, roll_out: &policy_align::RollOut) -> String {
         let middle = model.state.iter().map(|channel| short(channel.high * 0.5 + channel.median * 0.5));
         let middle = middle.collect::<Vec<_>>().join(",");
         let spread = spread_starts(model, STARTS).into_iter().map(|start| list(start.iter().copied()).replace(' ', ""));
         let starts = self.rollout.iter().cloned().chain(std::iter::once(middle)).chain(spread);
         let works = |from: &String| {
             let start = numbers(from, "--from").map(DVector::from_vec);
-            start.and_then(|start| followed(flags, model, &start, from)).is_ok()
+            start.and_then(|start| followed(roll_out, model, &start, from)).is_ok()
         };
         let Some(from) = starts.into_iter().find(works) else {
             return format!("policy-align info {}", quoted(&self.model));

@@ -80,7 +80,8 @@ impl RollOut {
             return Err(Failure::usage("a robot is only written to a file", "--robot", "-o path.mcap"));
         }
         let bar = session.bar(1, "{spinner} following the policy, {elapsed}");
-        let followed = followed(&flags, &model, &start, &self.from)?;
+        let roll_out = flags.roll_out(&model)?;
+        let followed = followed(&roll_out, &model, &start, &self.from)?;
         bar.finish_and_clear();
         let recorded = |output| write_paths(output, &model, std::slice::from_ref(&followed), &self.robot);
         let matching = self.output.as_deref().map(recorded).transpose()?.flatten();
@@ -101,10 +102,11 @@ impl RollOut {
             });
             return Ok(Output::json(&document, Exit::Done));
         }
-        Ok(Output::done(self.summary(&followed, matching.as_deref())))
+        let ends = roll_out.constraints.ends();
+        Ok(Output::done(self.summary(&followed, ends, matching.as_deref())))
     }
 
-    fn summary(&self, followed: &Path, matching: Option<&str>) -> String {
+    fn summary(&self, followed: &Path, ends: Option<f64>, matching: Option<&str>) -> String {
         let mut lines = Lines::default();
         let (count, last) = (followed.times.len(), followed.times.len() - 1);
         let [start, end] = [0, last].map(|at| list(followed.states.column(at).iter().copied()));
@@ -113,7 +115,9 @@ impl RollOut {
         if let Some((by, which)) = followed.broken_by {
             let how =
                 if by == 0.0 { "exactly".to_owned() } else { format!("within {} (constraint {which})", short(by)) };
-            lines.add("constraints", &format!("satisfied {how}"));
+            let free = ends.filter(|&end| end < followed.times[last]);
+            let free = free.map_or_else(String::new, |end| format!("; free from {} s on", short(end)));
+            lines.add("constraints", &format!("satisfied {how}{free}"));
         }
         lines.add("states", &format!("{}, all within the data", counted(count, "sample")));
         let written: Vec<String> =
@@ -130,8 +134,13 @@ impl RollOut {
 }
 
 /// Rolls out a policy with the options that the flags set.
-pub(crate) fn followed(flags: &RollOutFlags, model: &Model, start: &DVector<f64>, from: &str) -> Result<Path, Failure> {
-    flags.roll_out(model)?.follow(model, start).map_err(|error| {
+pub(crate) fn followed(
+    roll_out: &policy_align::RollOut,
+    model: &Model,
+    start: &DVector<f64>,
+    from: &str,
+) -> Result<Path, Failure> {
+    roll_out.follow(model, start).map_err(|error| {
         let exit = match error {
             RollOutError::Unsupported { .. }
             | RollOutError::ContextUnsupported { .. }
