@@ -68,7 +68,7 @@ vec4 body_color() {
   return vec4(u_color * (ambient + 0.65 * sun + 0.12 * rim) + 0.1 * gloss, u_opacity);
 }
 
-// Drawn solid, a path ends now. It keeps its colour whatever the light.
+// The solid part of a path ends at the current time. Its colour does not depend on the light.
 vec4 path_color() {
   bool ahead = v_along.y > u_now;
   if ((ahead && u_opacity == 1.0) || fract(v_along.x / u_dash.x) > u_dash.y) discard;

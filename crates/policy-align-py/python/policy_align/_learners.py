@@ -73,7 +73,7 @@ class SlopeGp(Learner):
 
 
 class DirectGp(Learner):
-    __doc__ = f"""A Gaussian process on the velocities as they are: right where nothing was constrained.
+    __doc__ = f"""A Gaussian process on the velocities as recorded: correct if nothing was constrained.
 
     {Learner.__init__.__doc__}"""
     _learner = "direct"
