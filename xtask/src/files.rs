@@ -59,7 +59,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_repository_is_the_one_that_a_folder_is_in() {
+    fn the_enclosing_repository_is_found() {
         let folder = tempfile::tempdir().unwrap();
         let root = folder.path();
         let (own, foreign) = (root.join("crates/a"), root.join("docs/example/src"));

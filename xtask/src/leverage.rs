@@ -184,7 +184,7 @@ mod tests {
 
     /// Every setting's recorded value equals the experiment's: the parameters are identical to the last digit.
     #[test]
-    fn what_is_said_to_be_used_is_used() {
+    fn recorded_settings_match_the_experiments() {
         let experiments = registry().unwrap();
         for setting in settings() {
             let experiment = experiments.iter().find(|experiment| experiment.id == setting.experiment).unwrap();

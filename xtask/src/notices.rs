@@ -244,7 +244,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_linked_is_named_and_nothing_else() {
+    fn only_linked_crates_are_listed() {
         let root = repository().unwrap();
         let packages = linked(&root).unwrap();
         let names: BTreeSet<&str> = packages.iter().map(|package| package.name.as_str()).collect();

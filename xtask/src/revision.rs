@@ -33,7 +33,7 @@ mod tests {
     }
 
     #[test]
-    fn a_commit_is_told_from_what_is_not_committed() {
+    fn revisions_mark_uncommitted_changes() {
         let folder = tempfile::tempdir().unwrap();
         let folder = folder.path();
         assert_eq!(revision(folder), None);

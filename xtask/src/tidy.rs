@@ -280,7 +280,7 @@ mod tests {
     }
 
     #[test]
-    fn a_test_that_no_program_names_is_found() {
+    fn tests_that_never_run_are_found() {
         let folder = tempfile::tempdir().unwrap();
         let write = |name: &str, text: &str| fs::write(folder.path().join(name), text).unwrap();
         fs::create_dir(folder.path().join("tests")).unwrap();
@@ -296,7 +296,7 @@ mod tests {
     }
 
     #[test]
-    fn what_users_get_does_not_need_the_paper() {
+    fn product_crates_do_not_depend_on_paper_crates() {
         let folders = ["crates/plot", "crates/paper/figures", "benches"].map(|folder| Path::new("/w").join(folder));
         let manifests = [
             manifest("plot", "dependencies = { figures = '1' }"),
@@ -308,7 +308,7 @@ mod tests {
     }
 
     #[test]
-    fn lines_are_counted_to_the_tests_and_no_less() {
+    fn lines_are_counted_up_to_the_tests() {
         let body = "mod a;\n#[cfg(test)]\nmod b;\n#[cfg(test)]\nuse c;\nfn d() {}\n";
         assert_eq!(lines_before_tests(body), 6);
         assert_eq!(lines_before_tests(&format!("{body}#[cfg(test)]\nmod tests {{\n    fn e() {{}}\n}}\n")), 6);
@@ -316,7 +316,7 @@ mod tests {
     }
 
     #[test]
-    fn a_learner_that_names_the_truth_is_found() {
+    fn disallowed_dependencies_are_found() {
         let allowed = toml::from_str(
             "align = { siblings = ['motion'], third_party = ['faer', 'rayon', 'faer'] }\n\
              motion = { siblings = [], third_party = [] }\n\

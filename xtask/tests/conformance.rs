@@ -17,7 +17,7 @@ fn conformance(vectors: &Path) -> (bool, String) {
 }
 
 #[test]
-fn a_file_is_known_by_its_kind_and_what_is_skipped_is_said() {
+fn files_are_recognised_by_kind_and_skips_reported() {
     let folder = tempfile::tempdir().unwrap();
     let (vectors, cases) = (folder.path(), folder.path().join("slope_gp"));
     fs::create_dir(&cases).unwrap();

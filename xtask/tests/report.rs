@@ -48,7 +48,7 @@ fn a_folder_shows_its_last_run_only() {
 }
 
 #[test]
-fn what_is_missing_is_said_and_not_drawn() {
+fn missing_figure_data_are_reported_and_not_drawn() {
     let folder = tempfile::tempdir().unwrap();
     reproduce(folder.path(), "table1/parabola-40x40-narrow");
     let figures = folder.path().join("run/figures");
@@ -91,7 +91,7 @@ fn files(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
 /// Each process writes every file completely, under a temporary name, so that the last one wins with a consistent
 /// report.
 #[test]
-fn reports_into_one_folder_at_the_same_time_leave_a_whole_one() {
+fn concurrent_reports_leave_a_complete_one() {
     let folder = tempfile::tempdir().unwrap();
     reproduce(folder.path(), "table1/parabola-40x40-narrow");
     said(folder.path(), &["report", "--from", "run", "--out", "shared"]);
@@ -149,7 +149,7 @@ fn results_that_cannot_be_used_are_refused_with_the_next_step() {
 }
 
 #[test]
-fn a_run_that_left_its_figures_out_leaves_none_of_an_earlier_one() {
+fn a_run_without_figures_removes_earlier_ones() {
     let folder = tempfile::tempdir().unwrap();
     reproduce(folder.path(), "table1/parabola-40x40-narrow");
     assert!(folder.path().join("run/figures/figure5-local.csv").exists());

@@ -51,7 +51,7 @@ fn the_number_of_threads_changes_nothing() {
 }
 
 #[test]
-fn a_killed_run_goes_on_and_ends_the_same() {
+fn a_killed_run_resumes_with_the_same_results() {
     let folder = tempfile::tempdir().unwrap();
     let (killed, whole) = (folder.path().join("killed"), folder.path().join("whole"));
     let arguments = ["--only", ROW, "--no-figures", "--data-sets", "12", "--threads", "1"];
@@ -117,7 +117,7 @@ fn the_form_is_the_documented_one() {
 }
 
 #[test]
-fn a_run_says_what_ran() {
+fn results_record_compiler_target_and_revision() {
     let folder = tempfile::tempdir().unwrap();
     run(folder.path(), &["--only", ROW, "--no-figures", "--data-sets", "1"]);
     let results: Value = serde_json::from_slice(&fs::read(folder.path().join("results.json")).unwrap()).unwrap();
@@ -163,7 +163,7 @@ fn a_full_standard_output_loses_no_results() {
 /// The process that started the tests may ignore signals, which a program inherits; `env` restores them.
 #[cfg(target_os = "linux")]
 #[test]
-fn a_run_that_is_told_to_stop_says_what_is_kept() {
+fn a_stopped_run_reports_saved_results() {
     for signal in ["INT", "TERM", "HUP"] {
         let folder = tempfile::tempdir().unwrap();
         let run = reproduce(folder.path(), &["--only", ROW, "--no-figures", "--threads", "1"]);
@@ -184,7 +184,7 @@ fn a_run_that_is_told_to_stop_says_what_is_kept() {
 }
 
 #[test]
-fn an_unknown_name_says_where_the_known_ones_are() {
+fn unknown_names_suggest_known_ones() {
     let folder = tempfile::tempdir().unwrap();
     let output = reproduce(folder.path(), &["--only", "table9"]).output().unwrap();
     assert!(!output.status.success());
@@ -219,7 +219,7 @@ fn usage_errors_have_three_lines_and_their_exit_code() {
 
 /// A program that is built once and called in several checkouts reads and writes in the current checkout.
 #[test]
-fn the_repository_is_where_the_command_is_called() {
+fn the_repository_is_found_from_the_working_folder() {
     let folder = tempfile::tempdir().unwrap();
     let call = |place: &Path, arguments: &[&str]| {
         let output = Command::new(env!("CARGO_BIN_EXE_xtask")).args(arguments).current_dir(place).output().unwrap();
@@ -283,7 +283,7 @@ fn the_committed_records_are_of_this_code() {
 }
 
 #[test]
-fn shards_are_merged_to_the_run_that_they_share() {
+fn merged_shards_equal_the_whole_run() {
     const PART: [&str; 5] = ["--only", ROW, "--no-figures", "--data-sets", "7"];
     let folder = tempfile::tempdir().unwrap();
     let (whole, merged) = (folder.path().join("whole"), folder.path().join("merged"));

@@ -29,7 +29,7 @@ fn with(change: impl Fn(&mut PolicyAlign)) -> PolicyAlign {
 
 #[test]
 #[allow(clippy::too_many_lines, reason = "a table, one case a row")]
-fn what_is_refused() {
+fn invalid_input_is_refused() {
     let touching =
         || vec![line([0.0, 0.0], [1.0, 1.0], 5), line([0.0, 0.0], [1.0, 1.0], 5), line([9.0, 0.0], [8.0, 0.0], 5)];
     let half_recorded = {
@@ -189,7 +189,7 @@ fn what_is_refused() {
 }
 
 #[test]
-fn what_the_regression_refuses() {
+fn invalid_regression_input_is_refused() {
     let aligned = PolicyAlign::default().align(&observed(sound())).unwrap();
     let mut rng = StdRng::seed_from_u64(1);
     let parameter = |name, value, range| AlignError::Lwpr(LwprError::Parameter { name, value, range });
@@ -247,7 +247,7 @@ fn assert_finite(name: &str, aligned: &Aligned) {
 }
 
 #[test]
-fn what_looks_odd_and_is_fine() {
+fn unusual_valid_input_is_aligned() {
     let still = || line([0.5, 0.5], [0.5, 0.5], 6);
     let fixed = |sigma_squared| with(move |p| p.bandwidth = Bandwidth::Fixed(sigma_squared));
     let one_still = {
@@ -301,7 +301,7 @@ fn what_looks_odd_and_is_fine() {
 }
 
 #[test]
-fn what_gives_reason_for_doubt() {
+fn doubtful_alignments_give_warnings() {
     let apart: Vec<_> = (0..4).map(|k| line([0.0, 10.0_f64.powi(k)], [1.0, 10.0_f64.powi(k)], 5)).collect();
     let aligned = with(|p| p.bandwidth = Bandwidth::Fixed(0.1)).align(&observed(apart)).unwrap();
     assert_eq!(aligned.warnings(), [Warning::ManyDiscarded { discarded: 3, of: 4 }]);
@@ -324,7 +324,7 @@ fn what_gives_reason_for_doubt() {
 }
 
 #[test]
-fn errors_say_what_next() {
+fn errors_suggest_a_remedy() {
     let pairs = (0..7).map(|k| (k, k + 1)).collect();
     let message = AlignError::ZeroBandwidth { pairs, usable: Some(0.01234) }.to_string();
     assert!(
@@ -338,7 +338,7 @@ fn errors_say_what_next() {
 
 #[test]
 #[should_panic(expected = "as many dimensions as the potential")]
-fn a_state_of_another_dimension_is_a_bug() {
+fn a_state_of_wrong_dimension_panics() {
     let aligned = PolicyAlign::default().align(&observed(sound())).unwrap();
     let learnt = aligned.learn(&LwprRegressor::default(), &mut StdRng::seed_from_u64(1)).unwrap();
     learnt.global_potential().value(DVector::zeros(3).as_view());
@@ -346,21 +346,21 @@ fn a_state_of_another_dimension_is_a_bug() {
 
 #[test]
 #[should_panic(expected = "as many dimensions as the trajectory")]
-fn responsibilities_for_a_state_of_another_dimension_are_a_bug() {
+fn responsibilities_panic_for_a_state_of_wrong_dimension() {
     let aligned = PolicyAlign::default().align(&observed(sound())).unwrap();
     aligned.responsibilities(DVector::zeros(3).as_view());
 }
 
 #[test]
 #[should_panic(expected = "an action has as many dimensions as the policy")]
-fn an_action_of_another_dimension_is_a_bug() {
+fn an_action_of_wrong_dimension_panics() {
     let policy = DirectPolicyLearning::default();
     let policy = policy.learn_policy(&observed(sound()), &[], &mut StdRng::seed_from_u64(1)).unwrap();
     policy.action_into(DVector::zeros(2).as_view(), DVector::zeros(3).as_view_mut());
 }
 
 #[test]
-fn what_overflows_among_the_discarded_does_no_harm() {
+fn overflow_in_discarded_trajectories_is_harmless() {
     // Three trajectories that agree; far away, two that meet, with potentials too different for f64.
     let still = |y| (line([0.0, y], [3.0, y], 4), DMatrix::from_element(2, 4, 0.1));
     let steep = |sign: f64| (line([100.0, 0.0], [103.0, 0.0], 4), DMatrix::from_element(2, 4, sign * 5e307));

@@ -19,7 +19,7 @@ fn warnings(movements: Vec<DMatrix<f64>>) -> Vec<Warning> {
 }
 
 #[test]
-fn sound_movements_give_no_reason() {
+fn sound_movements_give_no_warnings() {
     for seed in 0..20 {
         assert_eq!(warnings(movements(seed)), [], "{seed}");
     }
@@ -44,7 +44,7 @@ fn sound_movements_give_no_reason() {
 }
 
 #[test]
-fn rows_taken_for_columns() {
+fn transposed_states_are_found() {
     let sound = movements(1);
     let transposed = sound.iter().map(DMatrix::transpose).collect();
     assert_eq!(warnings(transposed)[0], Warning::LooksTransposed { dim: 40, n_samples: 2 });
@@ -68,7 +68,7 @@ fn an_angle_that_was_wrapped_and_samples_that_are_missing() {
 }
 
 #[test]
-fn who_stands_and_who_comes_twice() {
+fn standing_and_duplicate_movements_are_found() {
     let mut all = movements(5);
     let still = DMatrix::from_fn(2, 30, |c, _| all[4][(c, 7)] + 0.01);
     let backwards = DMatrix::from_fn(2, 40, |c, i| all[9][(c, 39 - i)]);

@@ -61,7 +61,7 @@ fn the_policy_is_recovered_where_the_naive_one_is_not() {
 }
 
 #[test]
-fn the_parts_that_no_split_takes_further_are_the_groups() {
+fn unsplit_parts_are_the_groups() {
     let mut most = 0;
     for seed in 0..10 {
         let aligned = align_toy(Bandwidth::Narrow, seed);
@@ -79,7 +79,7 @@ fn the_parts_that_no_split_takes_further_are_the_groups() {
 }
 
 #[test]
-fn what_is_true_does_not_leak() {
+fn recorded_truth_does_not_affect_learning() {
     let recordings = recordings(3);
     let forged: Vec<Recording> = recordings
         .iter()
@@ -199,7 +199,7 @@ impl Regressor for ParabolaFit {
 }
 
 #[test]
-fn another_regressor_fits_in() {
+fn a_custom_regressor_can_be_used() {
     let aligned = align_toy(Bandwidth::Narrow, 11);
     let regressor: &dyn Regressor<Fitted = Parabola, Error = std::convert::Infallible> = &ParabolaFit;
     let learnt = aligned.regress(regressor, &aligned.samples(), &mut rng(12)).unwrap();
@@ -251,7 +251,7 @@ fn every_pass_learns_every_sample_of_outputs_divided_by_their_spread() {
 }
 
 #[test]
-fn units_of_length_decide_nothing() {
+fn learning_is_invariant_to_the_unit_of_length() {
     let states = recordings(24).into_iter().map(|recording| recording.observed.states().clone());
     let movements = Demonstrations::from_states(states, 1.0).unwrap();
     let metres = DirectPolicyLearning::default().learn_policy(&movements, &[], &mut rng(25)).unwrap();
@@ -299,7 +299,7 @@ fn all_ways_to_learn_give_the_same_policy() {
 }
 
 #[test]
-fn a_learnt_policy_knows_what_it_is_made_of() {
+fn learnt_policies_expose_kept_potential_and_support() {
     let demonstrations = demonstrations(&recordings(18)).unwrap();
     let aligned = PolicyAlign::default().align(&demonstrations).unwrap();
     let learners: [Box<dyn Learner>; 2] = [

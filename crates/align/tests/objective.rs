@@ -16,7 +16,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(200))]
 
     #[test]
-    fn every_stage_is_the_papers(
+    fn every_stage_matches_the_papers_formulas(
         demonstrations in drawn::demonstrations(2), integration in drawn::integration(), bandwidth in drawn::bandwidth(),
         floor in prop_oneof![
             Just(0.0), Just(1e-20), Just(1e-30), (-6.0_f64..-1.0).prop_map(|exponent| 10.0_f64.powf(exponent)),

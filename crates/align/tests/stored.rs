@@ -62,7 +62,7 @@ fn bits(policy: &dyn LearntPolicy) -> Vec<[u64; 3]> {
 }
 
 #[test]
-fn what_is_read_back_acts_the_same_to_the_last_bit() {
+fn stored_policies_act_bitwise_identically() {
     let learnt = potential_policy();
     let read: PotentialPolicy = serde_json::from_str(&serde_json::to_string(&learnt).unwrap()).unwrap();
     assert_eq!(bits(&read), bits(&learnt));
@@ -120,7 +120,7 @@ fn write_golden_files() {
 }
 
 #[test]
-fn what_is_damaged_is_refused() {
+fn damaged_policies_are_refused() {
     let sound = golden("potential")["policy"].clone();
     let read = |policy: &Value| serde_json::from_value::<PotentialPolicy>(policy.clone()).unwrap_err().to_string();
     let cases = [
@@ -166,7 +166,7 @@ proptest! {
 }
 
 #[test]
-fn parameters_are_stored_and_what_is_not_said_is_the_default() {
+fn parameters_round_trip_and_omitted_ones_are_defaults() {
     let learner = PotentialPolicyLearning {
         align: PolicyAlign {
             bandwidth: Bandwidth::Fixed(0.25),

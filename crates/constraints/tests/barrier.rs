@@ -60,7 +60,7 @@ proptest! {
     }
 
     #[test]
-    fn rows_are_the_normals_of_what_blocks_in_the_columns_of_what_is_blocked(
+    fn rows_hold_the_normals_of_blocking_plates(
         plates in vec(plate(), 0..4), influence in 0.01..1.0f64, (n_points, state) in (1..4usize)
             .prop_flat_map(|n| (Just(n), vec(-1.0..1.0f64, 3 * n))),
     ) {
@@ -171,7 +171,7 @@ fn bad_barriers_are_refused() {
 
 /// A point without a finite position is neither blocked nor free.
 #[test]
-fn states_that_are_none_are_refused() {
+fn invalid_states_are_refused() {
     let barrier = Barrier::new(with_a_gap(0.4, 0.1), 0.05, 2).unwrap();
     for coordinate in 0..6 {
         for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {

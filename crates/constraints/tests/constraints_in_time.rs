@@ -82,7 +82,7 @@ fn the_number_of_rows_may_change_with_the_state() {
 }
 
 #[test]
-fn phases_of_different_kinds_and_references_behave_as_what_they_hold() {
+fn phases_may_hold_constraints_of_different_kinds() {
     let phases: Vec<(f64, Box<dyn PfaffianConstraint>)> = vec![
         (0.0, Box::new(Unconstrained { dim: 2 })),
         (1.0, Box::new(row(&[0.0, 1.0]))),

@@ -92,7 +92,7 @@ proptest! {
 
     /// The lengths of the normals do not matter.
     #[test]
-    fn longer_normals_forbid_the_same((arm, q, normals, wish) in case(), factor in 0.01..100.0f64) {
+    fn lengths_of_normals_do_not_matter((arm, q, normals, wish) in case(), factor in 0.01..100.0f64) {
         let free = |normals| {
             let constraint = PointConstraint::new(normals, q.len(), |q, j| arm.jacobian(q, j)).unwrap();
             constraint.null_space_projector(q.as_view(), 0.0).unwrap()
@@ -147,7 +147,7 @@ fn bad_points_are_refused() {
 
 /// The reason for the error is passed on.
 #[test]
-fn a_function_that_cannot_answer_says_why() {
+fn jacobian_errors_pass_on_their_reason() {
     let broken = |_: DVectorView<'_, f64>, mut jacobian: DMatrixViewMut<'_, f64>| {
         jacobian.fill(1.0);
         Err("the encoder is dead")

@@ -168,7 +168,7 @@ proptest! {
 }
 
 #[test]
-fn nothing_to_obey_leaves_everything_free() {
+fn empty_and_zero_constraints_give_the_identity() {
     for matrix in [DMatrix::zeros(0, 3), DMatrix::zeros(1, 3), DMatrix::zeros(5, 3)] {
         let projector = NullSpaceProjector::new(&matrix).unwrap();
         assert_eq!(projector, NullSpaceProjector::identity(3));
@@ -177,7 +177,7 @@ fn nothing_to_obey_leaves_everything_free() {
 }
 
 #[test]
-fn what_cannot_move_stays_exactly_where_it_is() {
+fn full_rank_constraints_project_to_exact_zero() {
     let matrix = dmatrix![0.3, 0.1, 0.7; -0.4, 0.9, 0.2; 0.5, 0.5, -0.6];
     let projector = NullSpaceProjector::new(&matrix).unwrap();
     assert_eq!(projector.rank(), 3);
@@ -212,7 +212,7 @@ fn a_small_row_is_obeyed_as_exactly_as_a_large_one() {
 }
 
 #[test]
-fn errors_say_where() {
+fn errors_locate_the_invalid_value() {
     for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
         let mut matrix = DMatrix::from_element(2, 3, 1.0);
         matrix[(1, 2)] = value;
@@ -232,6 +232,6 @@ fn errors_say_where() {
 
 #[test]
 #[should_panic(expected = "vectors of length n")]
-fn a_vector_of_another_length_is_a_bug() {
+fn a_vector_of_wrong_length_panics() {
     NullSpaceProjector::identity(3).project(dvector![1.0, 2.0].as_view());
 }

@@ -132,7 +132,7 @@ proptest! {
 
     /// The recorded truth is consistent: u = Nπ, Nu = u, and constraints act on the requested movements.
     #[test]
-    fn recordings_are_true(seed in any::<u64>(), which in 0..6usize, constraint in 0..4usize, k in 1..5usize) {
+    fn recorded_truth_is_consistent(seed in any::<u64>(), which in 0..6usize, constraint in 0..4usize, k in 1..5usize) {
         let policy = [
             PolicyKind::Sinusoidal,
             PolicyKind::Wells { dim: 6 },

@@ -121,7 +121,7 @@ proptest! {
     }
 
     #[test]
-    fn the_scene_is_what_it_says(scene in scene(), gap in 0.0..0.5f64, state in proptest::collection::vec(-1.0..1.0f64, 6)) {
+    fn scene_matches_its_parameters(scene in scene(), gap in 0.0..0.5f64, state in proptest::collection::vec(-1.0..1.0f64, 6)) {
         let (target, state) = (scene.target(), DVector::from_vec(state));
         let side = scene.ball_diameter / 2.0;
         let ball = scene.ball;

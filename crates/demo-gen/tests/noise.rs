@@ -46,7 +46,7 @@ proptest! {
     }
 
     #[test]
-    fn its_size_is_a_share_of_each_dimension(share in 0.01..1.0f64, seed in any::<u64>(), stretch in 0.1..10.0f64) {
+    fn noise_is_proportional_to_each_dimensions_spread(share in 0.01..1.0f64, seed in any::<u64>(), stretch in 0.1..10.0f64) {
         let mut clean = recordings(200, seed);
         for recording in &mut clean {
             // Changes the unit of the second dimension.

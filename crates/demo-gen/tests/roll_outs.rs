@@ -208,7 +208,7 @@ proptest! {
     }
 
     #[test]
-    fn the_truth_is_what_the_functions_say(case in case()) {
+    fn recorded_truth_matches_potential_and_constraint(case in case()) {
         let recording = case.record();
         let Recording { observed, truth } = &recording;
         prop_assert_eq!(&truth.states, observed.states());
@@ -242,7 +242,7 @@ proptest! {
 }
 
 #[test]
-fn demonstrations_are_what_was_observed() {
+fn demonstrations_contain_the_observed_movements() {
     let potential = Parabola { weight: 0.1, centre: dvector![0.0, 1.0] };
     let recordings: Vec<_> = [5, 9]
         .map(|n_samples| {

@@ -41,7 +41,7 @@ fn tool(arm: &Wiping, recording: &Recording, sample: usize) -> (Vector3<f64>, Ve
 proptest! {
     /// A⁺b satisfies A u = b and has no component in the null space of A.
     #[test]
-    fn a_task_velocity_is_the_least_that_fulfils_it(rows in 1..4usize, entries in vec(-1.0..1.0f64, 15), b in vec(-1.0..1.0f64, 3)) {
+    fn task_velocity_has_minimum_norm(rows in 1..4usize, entries in vec(-1.0..1.0f64, 15), b in vec(-1.0..1.0f64, 3)) {
         let matrix = DMatrix::from_row_slice(rows, 5, &entries[..5 * rows]);
         let singular = matrix.singular_values();
         prop_assume!(singular.min() > 0.1 * singular.max());

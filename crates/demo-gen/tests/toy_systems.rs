@@ -48,7 +48,7 @@ proptest! {
     }
 
     #[test]
-    fn draws_come_in_the_order_promised(system in toy(), seed in any::<u64>()) {
+    fn draws_follow_the_documented_order(system in toy(), seed in any::<u64>()) {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         let n = system.n_samples;
         for recording in record(&system, seed) {
@@ -77,7 +77,7 @@ proptest! {
 }
 
 #[test]
-fn constraints_change_where_the_paper_has_them() {
+fn constraints_change_at_the_papers_samples() {
     let cases: [(usize, Redraw, &[usize]); 5] = [
         (40, Redraw::Every(20), &[20]),
         (100, Redraw::Every(20), &[20, 40, 60, 80]),
@@ -93,7 +93,7 @@ fn constraints_change_where_the_paper_has_them() {
 }
 
 #[test]
-fn starts_and_constraints_are_spread_as_the_paper_says() {
+fn starts_and_constraints_are_drawn_uniformly() {
     let recordings = record(&ToySystem { n_trajectories: 4000, n_samples: 2, ..ToySystem::default() }, 1);
     let share =
         |count: fn(&Recording) -> bool| recordings.iter().filter(|recording| count(recording)).count() as f64 / 4000.0;

@@ -92,7 +92,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn no_more_is_read_than_is_allowed() {
+    fn reads_beyond_the_limit_are_refused() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.toml");
         fs::write(&path, "a = 1").unwrap();

@@ -179,7 +179,7 @@ mod tests {
     }
 
     #[test]
-    fn files_that_belong_together_are_all_written_before_one_is_replaced() {
+    fn all_drafts_are_written_before_any_file_is_replaced() {
         let folder = tempfile::tempdir().unwrap();
         let [model, page] = ["model.json", "model.html"].map(|name| folder.path().join(name));
         for path in [&model, &page] {

@@ -71,7 +71,7 @@ fn fortran_order_and_columns_are_turned() {
 }
 
 #[test]
-fn what_is_no_array_of_numbers_is_refused() {
+fn unsupported_and_truncated_arrays_are_refused() {
     let data = [0; 96];
     refused("a.npy", npy(1, "'|O'", false, "(3,)", b"\x80\x04."), &every(1.0), "Pickled", &["pickle"]);
     refused("a.npy", npy(1, "'<c16'", false, "(3, 2)", &data), &every(1.0), "Type", &["complex128"]);
@@ -157,7 +157,7 @@ fn arrays_are_understood_by_their_names() {
 }
 
 #[test]
-fn what_does_not_belong_together_is_refused() {
+fn inconsistent_arrays_are_refused() {
     let state = ("x", floats("(6, 2)", &ramp(12, 1.5)));
     let with = |other: (&'static str, Vec<u8>)| npz(false, &[state.clone(), other]);
     refused("a.npz", with(("v", floats("(5, 2)", &ramp(10, 1.0)))), &every(0.1), "Lengths", &["(6, 2)", "(5, 2)"]);
@@ -178,7 +178,7 @@ fn what_does_not_belong_together_is_refused() {
 }
 
 #[test]
-fn archives_that_lie_are_refused() {
+fn damaged_and_oversized_archives_are_refused() {
     let whole = npz(true, &[("x", floats("(600, 2)", &ramp(1200, 1.5))), ("dt", floats("()", &[0.1]))]);
     assert!(parsed("a.npz", &whole, &ReadOptions::default()).is_ok());
     refused("a.npz", &whole[..whole.len() / 2], &ReadOptions::default(), "Truncated", &["a.npz"]);

@@ -135,7 +135,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
     #[test]
-    fn what_the_library_writes_is_read(
+    fn bags_of_the_reference_library_are_read(
         samples in 20usize..300,
         compression in prop_oneof![Just(None), Just(Some(Compression::Lz4)), Just(Some(Compression::Zstd))],
         chunks in any::<bool>(),
@@ -170,7 +170,7 @@ proptest! {
 
     /// A checksum covers every byte of the data.
     #[test]
-    fn a_changed_byte_is_noticed(at in 0.0f64..1.0, change in 1u8..=255, samples in 20usize..60) {
+    fn a_changed_byte_never_alters_positions(at in 0.0f64..1.0, change in 1u8..=255, samples in 20usize..60) {
         let made = recordings(samples);
         let mut bytes = written(&made);
         let data = mcap::read::footer(&bytes).unwrap().summary_start;

@@ -185,7 +185,7 @@ fn columns_of_hdf5_and_mat_are_chosen() {
 
 /// In every format, a name that does not exist is an error that lists the existing names.
 #[test]
-fn what_names_nothing_is_refused() {
+fn unknown_column_names_are_refused() {
     let files = Files::new();
     let csv = files.add("a.csv", "episode,t,x,y\n0,0,1,2\n0,1,1.5,2.5\n0,2,1.75,3\n");
     let recordings = read_with(&csv, &ReadOptions::default()).unwrap();
@@ -214,7 +214,7 @@ fn what_names_nothing_is_refused() {
 
 /// A name that exists in only one of several files is valid.
 #[test]
-fn one_file_of_several_may_lack_what_is_ignored() {
+fn ignored_columns_may_be_missing_in_some_files() {
     let files = Files::new();
     let more = files.add("a.csv", "t,x,extra\n0,1,2\n1,1.5,9\n");
     let fewer = files.add("b.csv", "t,x\n0,1\n1,1.5\n");

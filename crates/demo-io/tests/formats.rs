@@ -25,7 +25,7 @@ fn formula(episode: usize, sample: usize) -> [f64; 2] {
 }
 
 #[test]
-fn files_of_other_tools_hold_what_was_put_in() {
+fn files_of_other_tools_hold_the_expected_values() {
     for file in FILES {
         let found = read_with(&kept(file), &ReadOptions::default()).unwrap();
         assert_eq!(found.episodes.len(), 3, "{file}");
@@ -145,7 +145,7 @@ fn a_folder_of_lerobot_is_read_by_its_rate_and_names() {
 }
 
 #[test]
-fn all_that_is_written_is_read_to_the_same_bits() {
+fn written_files_round_trip_bitwise() {
     let files = Files::new();
     for file in FILES {
         let found = read_with(&kept(file), &ReadOptions::default()).unwrap();
@@ -171,7 +171,7 @@ fn same(found: &Recordings, back: &Recordings, what: &str) {
 
 /// Options without effect in a format are reported once for all files of it.
 #[test]
-fn options_without_effect_are_remarked() {
+fn options_without_effect_are_reported() {
     let files = Files::new();
     let [a, b] = ["a.csv", "b.csv"].map(|name| files.add(name, "t,x,y\n0,1,2\n1,3,5\n2,4,9\n"));
     let options = ReadOptions {

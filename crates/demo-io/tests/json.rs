@@ -28,7 +28,7 @@ proptest! {
 
     /// Every JSON layout of movements of any lengths yields the same as our own form.
     #[test]
-    fn all_forms_hold_the_same(
+    fn all_json_forms_give_the_same_recordings(
         movements in proptest::collection::vec(proptest::collection::vec([-9.0..9.0f64, -9.0..9.0f64, -9.0..9.0f64, -9.0..9.0f64], 2..7), 2..5),
         pretty in any::<bool>(),
     ) {
@@ -74,7 +74,7 @@ proptest! {
 }
 
 #[test]
-fn movements_keep_their_names_and_what_stands_beside_them() {
+fn movements_keep_their_names_and_shared_fields() {
     let text =
         r#"{"b": {"pos": [[1, 2], [3, 4]]}, "a": {"pos": [[5, 6], [7, 8]]}, "dt": 0.5, "names": ["left", "up"]}"#;
     let found = parsed("a.json", text, &ReadOptions::default()).unwrap();
@@ -86,7 +86,7 @@ fn movements_keep_their_names_and_what_stands_beside_them() {
 }
 
 #[test]
-fn lists_that_fit_nothing_are_refused() {
+fn inconsistent_lists_are_refused() {
     let every = ReadOptions { dt: Some(0.5), ..ReadOptions::default() };
     for (text, code, words) in [
         (r#"[{"pos": [[1, 2], [3]]}]"#, "Ragged", ["'pos'", "entry 0"]),

@@ -142,7 +142,7 @@ proptest! {
     /// For texts of any form and pieces of any size, the pieces contain the episodes of the file, with the same names, stamps, numbers and
     /// lines. This also holds for some of the pieces, or a single one.
     #[test]
-    fn pieces_are_the_file(table in tables(), most in 1u64..4000) {
+    fn pieces_hold_the_episodes_of_the_file(table in tables(), most in 1u64..4000) {
         let files = Files::new();
         let path = files.add("a.txt", table.text());
         let options = table.options();
@@ -194,7 +194,7 @@ fn movements(count: usize, column: &str, value: impl Fn(usize, usize) -> String)
 }
 
 #[test]
-fn what_cannot_be_cut_stays_whole() {
+fn files_that_cannot_be_cut_stay_whole() {
     let files = Files::new();
     let plain = ReadOptions::default();
     let same = |_: usize, _: usize| "a".to_owned();
@@ -307,7 +307,7 @@ fn errors_name_the_line_of_the_file() {
 }
 
 #[test]
-fn a_file_that_has_changed_is_noticed() {
+fn changed_files_are_refused() {
     let files = Files::new();
     let plain = ReadOptions::default();
     let text = movements(4, "note", |_, _| "a".to_owned());
@@ -333,7 +333,7 @@ proptest! {
 
     /// Lines with one episode each, named or numbered, between blank lines.
     #[test]
-    fn pieces_of_json_lines_are_the_file(
+    fn pieces_of_json_lines_hold_the_episodes_of_the_file(
         lines in prop::collection::vec((2usize..12, any::<bool>(), 0u8..8), 2..12),
         most in 1u64..2000,
         (ends, mark) in (any::<bool>(), any::<bool>()),

@@ -53,7 +53,7 @@ fn separators_line_ends_and_decimal_commas_give_the_same_numbers() {
 }
 
 #[test]
-fn other_texts_are_no_recordings() {
+fn texts_without_a_table_are_refused() {
     let wall = "# x stays\n[[constraint]]\nnormal = [1, 0, 0, 0, 0, 0, 0]\n";
     for (name, text) in [("wall.toml", wall), ("arm.urdf", "<robot name=\"1 2 3\">\n</robot>\n"), ("notes", "to do\n")]
     {
@@ -87,7 +87,7 @@ fn quotes_blank_lines_and_comments_are_understood() {
 }
 
 #[test]
-fn thousands_of_columns_are_no_trouble() {
+fn thousands_of_columns_are_read() {
     let header: Vec<String> = (0..3000).map(|column| format!("c_{column}")).collect();
     let mut text = format!("t,{}\n", header.join(","));
     for row in 0..4 {
@@ -100,7 +100,7 @@ fn thousands_of_columns_are_no_trouble() {
 }
 
 #[test]
-fn what_is_wrong_is_said_with_its_line() {
+fn faults_are_reported_with_their_line() {
     let with = |line: usize, content: &str| {
         let text = two_movements(",", "\n", ".");
         let mut lines: Vec<&str> = text.lines().collect();
@@ -134,14 +134,14 @@ fn what_is_wrong_is_said_with_its_line() {
 }
 
 #[test]
-fn an_open_quotation_mark_does_not_swallow_memory() {
+fn an_unclosed_quotation_mark_is_refused() {
     let mut text = "t,x\n0,\"1\n".to_owned();
     text += &"1,2\n".repeat(5 << 20);
     refused("a.csv", text, &plain(), "NotThisFormat", &["quotation mark", "line"]);
 }
 
 #[test]
-fn what_is_missing_is_dropped_or_filled() {
+fn missing_values_are_dropped_or_filled() {
     let text = "t,x,y\n0,0,0\n1,1,2\n2,,4\n3,nan,6\n4,4,8\n6,6,12\n";
     let dropped = parsed("a.csv", text, &ReadOptions { nan: Nan::Drop, ..plain() }).unwrap();
     assert_eq!(dropped.episodes[0].times.stamps()[..], [0.0, 1.0, 4.0, 6.0]);
@@ -227,7 +227,7 @@ fn files_of_a_folder_are_movements_in_natural_order() {
 }
 
 #[test]
-fn what_is_something_else_is_said() {
+fn foreign_formats_are_named_and_refused() {
     refused("a.csv", b"\x80\x04\x95\x0b\0\0\0.", &plain(), "Pickled", &["pickle"]);
     refused("a.csv", b"SQLite format 3\0 and more", &plain(), "Unsupported", &["sqlite3", "mcap"]);
     refused("a.bag", b"#ROSBAG V2.0\n", &plain(), "Unsupported", &["rosbags-convert"]);
@@ -257,7 +257,7 @@ proptest! {
 
     /// Rows of interleaved movements keep their order within each movement.
     #[test]
-    fn interleaved_movements_are_told_apart(labels in proptest::collection::vec(0u8..4, 2..60)) {
+    fn interleaved_movements_are_separated(labels in proptest::collection::vec(0u8..4, 2..60)) {
         let mut text = "episode,t,x\n".to_owned();
         for (row, label) in labels.iter().enumerate() {
             let _ = writeln!(text, "take {label},{row},{}", row as f64 * 1.25 + 0.1);
@@ -292,7 +292,7 @@ proptest! {
 }
 
 #[test]
-fn names_that_hold_line_ends_leave_messages_their_lines() {
+fn line_ends_in_names_do_not_break_messages() {
     let table = |middle: &str| format!("t,\"x\ny\",z\n0,1,2\n0.1,{middle},3\n0.2,1,4\n");
     refused("a.csv", table("NaN").replace("0.2,1", "0.2,2"), &plain(), "NotFinite", &["'x y' is not a finite number"]);
     // A column that never changes is reported.
@@ -331,7 +331,7 @@ fn names_of_constraints_may_change() {
 }
 
 #[test]
-fn a_list_of_names_has_one_a_sample() {
+fn lists_of_names_need_one_per_sample() {
     let line = |names: &str| format!(r#"{{"dt": 0.1, "state": [[1.5], [2], [4]], "constraint": {names}}}"#);
     let found = parsed("a.jsonl", line(r#"["a", 3, null]"#), &plain()).unwrap();
     assert_eq!(found.episodes[0].constraint, motion::Labels::of_samples(["a", "3", ""]));
@@ -415,7 +415,7 @@ fn words_that_never_change_are_left_out() {
 }
 
 #[test]
-fn where_no_stamps_are_found_columns_are_named() {
+fn missing_stamps_are_reported_with_the_columns() {
     let text = "Uhrzeit,x,y\n0,1,2\n1,3,4\n";
     refused(
         "a.csv",

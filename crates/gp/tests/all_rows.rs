@@ -34,7 +34,7 @@ fn noisy() -> Set {
 
 /// The report states what a policy was learnt from; if nothing is thinned, inducing rows change nothing.
 #[test]
-fn inducing_rows_are_said_and_only_where_rows_are_thinned() {
+fn inducing_rows_are_reported_and_only_used_when_thinning() {
     let many = noisy();
     let [fit, thinned] = [300, 0].map(|inducing| gp(inducing).fit(&many.rows, &mut drawn::rng(1)).unwrap());
     let found = |fit: &SlopeFit| fit.report().rows + fit.report().rows_dropped.thinned;
@@ -51,7 +51,7 @@ fn inducing_rows_are_said_and_only_where_rows_are_thinned() {
 /// For a few movements without noise, more exact rows predict better than all rows through inducing rows; a few noisy rows are all
 /// exact.
 #[test]
-fn more_rows_are_exact_where_inducing_ones_predict_worse() {
+fn exact_rows_replace_inducing_rows_that_predict_worse() {
     let clean = set(wells, 3, (30, 60), 0.0, 5);
     let [fit, thinned] = [300, 0].map(|inducing| gp(inducing).fit(&clean.rows, &mut drawn::rng(1)).unwrap());
     let report = fit.report();
@@ -85,7 +85,7 @@ fn a_model_of_inducing_rows_is_stored() {
 /// For most states a subset of the rows decides whether all rows support them, with the same answer, with and without noise and
 /// inducing rows.
 #[test]
-fn support_is_told_as_by_variances() {
+fn support_decisions_match_the_variances() {
     let (mut induced, mut answers) = (0, [0; 2]);
     for (most, noise, movements) in [(300, 0.0, 30), (300, 0.05, 200), (0, 0.0, 30), (0, 0.2, 30)] {
         let set = set(wells, 3, (movements, 60), noise, 8);

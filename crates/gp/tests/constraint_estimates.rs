@@ -142,7 +142,7 @@ fn constraints_of_a_known_policy_are_found() {
 /// Slopes of smoothed positions have errors that hardly change from sample to sample. These are not mistaken for moving
 /// constraints.
 #[test]
-fn errors_that_samples_share_are_no_constraints() {
+fn shared_errors_are_not_taken_for_constraints() {
     let (samples, step, error) = (40, 0.05, 0.03 * ANGLES.rms());
     let mut rng = ChaCha8Rng::seed_from_u64(3);
     let (mut states, mut velocities, mut indices) = (vec![], vec![], vec![]);
@@ -170,7 +170,7 @@ fn errors_that_samples_share_are_no_constraints() {
 
 /// Free movement has no constraint, a rotation of the coordinates rotates the rows, and a Jacobian of 1 changes nothing.
 #[test]
-fn free_turned_and_the_same() {
+fn estimates_are_invariant_to_rotation_and_task_space() {
     let (movements, _) = ANGLES.with_truth(0.3, 0.02, 3);
     let rows = FrontEnd::Velocities.rows(&movements).unwrap();
     let plain = estimated(&rows, &known(&ANGLES));
@@ -218,7 +218,7 @@ fn moved(
 /// A circle has no single normal, a policy at rest shows nothing, and along a straight path the directions across it are
 /// hidden.
 #[test]
-fn what_cannot_be_named_is_not() {
+fn undetermined_constraints_are_not_named() {
     let known = |policy: fn(&DVector<f64>) -> DVector<f64>| Known { dim: 2, policy, turn: DMatrix::identity(2, 2) };
     let start = |k: usize| {
         let angle = 0.3 + 0.5 * k as f64;

@@ -187,7 +187,7 @@ fn one_dimension_has_no_rotation_and_two_movements_are_cut() {
 
 /// If the first family predicts exactly, no other is tried; otherwise all are.
 #[test]
-fn an_exact_family_has_no_rival() {
+fn an_exact_family_ends_the_search() {
     let learner = SlopeGp { curl_test: CurlTest::AssumePotential, ..SlopeGp::default() };
     let families = |policy: fn(&DVector<f64>) -> DVector<f64>| {
         let given = rows(2, (8, 12), policy, &mut rng(3));
@@ -218,7 +218,7 @@ fn freely(policy: Shown, seed: u64) -> (SlopeFit, f64) {
 /// Along a corridor everything is predicted, across it nothing is tested. The learnt policy is little more than the
 /// observed velocities, and the report is not much too optimistic.
 #[test]
-fn in_a_corridor_little_is_hidden() {
+fn corridor_fits_are_accurate_and_report_their_error() {
     let fits: Vec<_> = (0..6).map(|seed| freely(Shown::Handwriting, seed)).collect();
     let right = fits.iter().filter(|(_, error)| *error <= 0.3).count();
     let warned = fits.iter().filter(|(fit, error)| fit.report().expected_nupe >= 0.5 * error).count();
@@ -227,7 +227,7 @@ fn in_a_corridor_little_is_hidden() {
 
 /// If there is no potential, the best family of potentials is uninformative about the family of the rotation.
 #[test]
-fn a_free_limit_cycle_hides_nothing() {
+fn a_free_limit_cycle_is_learnt_with_rotation() {
     for seed in 0..6 {
         let (fit, error) = freely(Shown::LimitCycle, seed);
         assert!(fit.report().model == ModelKind::Helmholtz && error <= 0.01, "seed {seed}: {error}");

@@ -117,7 +117,7 @@ fn errors(set: impl Fn(u64) -> DataSet, gp: &SlopeGp, seeds: std::ops::RangeIncl
 
 #[test]
 #[ignore = "ten seconds of a release build"]
-fn a_press_of_three_per_cent() {
+fn errors_stay_small_under_a_push_of_three_per_cent() {
     let errors = errors(|seed| data_set(system("himmelblau"), PRESSED, seed), &learner().slope, 1..=8);
     assert!(errors[6] <= 0.03 && errors[7] <= 0.06, "{errors:?}");
 }

@@ -36,7 +36,7 @@ proptest! {
     /// States, potentials, actions and constraints behind the recordings are for scoring only. Replacing them by those of
     /// other movements changes every score and no bit of the learnt policies.
     #[test]
-    fn the_truth_is_not_learnt_from(
+    fn recorded_truth_does_not_affect_the_fits(
         (potential, other) in (potentials(), potentials()),
         (n_trajectories, n_samples, every) in (5_usize..9, 8_usize..16, 2_usize..8),
         (front_end, family, share) in (front_ends(), families(), 0.0..0.3),

@@ -49,7 +49,7 @@ proptest! {
 
     /// The policy's covariance along any n is the slope's.
     #[test]
-    fn policies_have_slopes(
+    fn policy_covariance_matches_the_slopes(
         block in prop_oneof![potentials(), Just(Block::Skew), (0.3..3.0).prop_map(Block::DivergenceFree)],
         dim in 2_usize..6, seed in any::<u64>(),
     ) {
@@ -76,7 +76,7 @@ proptest! {
 
     /// A covariance matrix of slopes is positive semidefinite.
     #[test]
-    fn slopes_can_be_drawn(
+    fn slope_covariance_is_positive_semidefinite(
         block in prop_oneof![potentials(), Just(Block::Skew), (0.3..3.0).prop_map(Block::DivergenceFree)],
         dim in 2_usize..5, count in 2_usize..12, seed in any::<u64>(),
     ) {

@@ -26,7 +26,7 @@ fn rows(system: &System, (push, noise): (f64, f64), seed: u64) -> (Rows, Rows) {
 
 /// A push with 5 % of noise in two dimensions: no switch is detected, but known ones determine the policy.
 #[test]
-fn known_switches_tell_a_policy_from_noise() {
+fn known_switches_reduce_the_error_in_noise() {
     let (plain, known) = rows(&HIMMELBLAU, (0.3, 0.05), 1);
     let [found, told] = [&plain, &known].map(|rows| error(&HIMMELBLAU, &learnt(rows, 1), 1));
     println!("found {found:.1e}, known {told:.1e}");
@@ -47,7 +47,7 @@ fn constraints_lie_between_known_switches() {
 }
 
 #[test]
-fn a_label_a_row() {
+fn labels_need_one_per_row() {
     let (plain, _) = rows(&ANGLES, (0.3, 0.0), 3);
     let count = plain.len();
     for found in [0, count - 1, count + 1] {

@@ -128,7 +128,7 @@ proptest! {
 
     /// A few states, and more than one thread gets.
     #[test]
-    fn many_states_are_one_after_the_other(
+    fn batch_predictions_equal_single_ones(
         (family, rotates) in (families(), any::<bool>()), dim in 2_usize..5, context in 0_usize..3, count in 1_usize..150,
         threads in 1_usize..4, seed in any::<u64>(),
     ) {
@@ -150,7 +150,7 @@ proptest! {
 }
 
 #[test]
-fn no_states_have_no_answers() {
+fn an_empty_batch_gives_empty_predictions() {
     let (slope, direct) = fits(&in_context((2, false), 0, (5, 9), 1), Family::Smooth, false);
     let none = DMatrix::zeros(2, 0);
     for policy in [&slope as &dyn LearntPolicy, &direct] {
@@ -163,7 +163,7 @@ fn no_states_have_no_answers() {
 
 /// Ensures that the tests above also evaluate rotation.
 #[test]
-fn a_policy_that_rotates_is_found_to() {
+fn rotating_policies_are_fitted_with_rotation() {
     let (slope, _) = fits(&in_context((2, true), 1, (6, 15), 1), Family::Smooth, true);
     assert!(slope.potential().is_none());
     assert!(slope.formula().terms.iter().any(|term| term.fall == Fall::DivergenceFree));

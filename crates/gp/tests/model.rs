@@ -83,7 +83,7 @@ proptest! {
 
     /// (S10): the closed form equals a model without the trajectory. Rows are in the units of all rows.
     #[test]
-    fn left_out_is_left_out(family in families(), dim in 2_usize..4, seed in any::<u64>()) {
+    fn left_out_predictions_equal_a_model_without_them(family in families(), dim in 2_usize..4, seed in any::<u64>()) {
         let rng = &mut rng(seed);
         let rows = rows(dim, (4, 6), descent, rng);
         let blocks = family.helmholtz_blocks(Trend::Quadratic);
@@ -127,7 +127,7 @@ proptest! {
     /// (S13) is the covariance of samples from the prior, conditioned on the rows: never above the prior, and nearly 0 at
     /// a row along its direction if there is no noise.
     #[test]
-    fn rows_tell_about_their_own_states(family in families(), dim in 2_usize..5, seed in any::<u64>()) {
+    fn rows_determine_their_own_states(family in families(), dim in 2_usize..5, seed in any::<u64>()) {
         let rng = &mut rng(seed);
         let rows = rows(dim, (4, 10), descent, rng);
         let blocks = family.blocks(Trend::Quadratic);

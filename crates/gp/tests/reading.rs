@@ -27,7 +27,7 @@ proptest! {
 
     /// A movement differs from its copy by 0, from its reverse by 2.
     #[test]
-    fn same_and_opposite(per in 4_usize..12, seed in any::<u64>()) {
+    fn copies_differ_by_zero_and_reversals_by_two(per in 4_usize..12, seed in any::<u64>()) {
         let near = |rows: &Rows| NearPasses::of(rows, 1e-9, &mut rng(0)).expect("a distance");
         let same = near(&copies(3, per, |_| 1.0, seed));
         prop_assert_eq!((same.pairs, same.samples, same.share), (3, 3 * per, Some(0.0)));
@@ -53,7 +53,7 @@ proptest! {
 proptest! {
     /// One dimension has no direction across: whatever the numbers, they show no hidden part and do not suggest one.
     #[test]
-    fn a_line_hides_nothing(
+    fn one_dimension_has_no_hidden_part(
         (a_s, a_d) in (0.0..2.0, 0.0..2.0),
         (q, t) in (0.0..3.0, -5.0..9.0),
         (lambda, t_lambda) in (-3.0..9.0, -5.0..9.0),
@@ -87,7 +87,7 @@ fn numbers() -> ReadingNumbers {
 }
 
 #[test]
-fn the_rule_in_its_order() {
+fn reading_rule_decides_every_case() {
     let seen = |share: f64| LeastSeen { share: 0.5 * share, direction: vec![1.0, 0.0] };
     let constrained = || ReadingNumbers { q: 0.4, t: 2.6, ..numbers() };
     let cases = [
@@ -153,7 +153,7 @@ fn four_demonstrations_lean() {
 }
 
 #[test]
-fn the_user_may_know_better() {
+fn a_given_reading_overrides_the_estimate() {
     let given = rows(2, (6, 10), descent, &mut rng(1));
     let own = AutoGp { reading: Some(Hypothesis::Free), ..AutoGp::default() };
     let fit = own.fit(&given, &mut rng(2)).expect("a fit");
@@ -190,7 +190,7 @@ fn five_free_movements_push_nothing() {
 
 /// Noise causes motion across a constraint common to all movements, but little.
 #[test]
-fn noise_across_one_constraint_for_all_is_no_freedom() {
+fn noise_across_a_common_constraint_stays_ambiguous() {
     let fit = learnt(PolicyKind::Wells { dim: 3 }, ConstraintKind::OneForAll, 20, Some(30.0));
     assert!(fit.numbers().gap <= 0.1 && fit.numbers().p_d < 0.1, "{:?}", fit.numbers());
     assert_eq!(fit.reading(), Hypothesis::Ambiguous, "{:?}", fit.numbers());

@@ -68,7 +68,7 @@ fn of_rows(rows: usize) -> Value {
 }
 
 #[test]
-fn reading_factors_nothing() {
+fn reading_a_fit_computes_no_factor() {
     let rows = 1500;
     let stored = of_rows(rows);
     let mut fit = None;

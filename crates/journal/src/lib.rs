@@ -195,7 +195,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_written_is_found_again_bit_for_bit() {
+    fn records_are_read_back_bitwise() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("a.journal");
         let (journal, found) = open(&path);
@@ -216,7 +216,7 @@ mod tests {
 
     /// A journal that is cut anywhere, as by a kill, loses the record that is cut and no other, before or after.
     #[test]
-    fn a_torn_line_costs_only_itself() {
+    fn a_torn_line_loses_only_its_record() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("a.journal");
         let whole = {
@@ -241,7 +241,7 @@ mod tests {
     }
 
     #[test]
-    fn two_cannot_write_one_and_what_is_something_else_stays() {
+    fn second_writers_and_foreign_files_are_refused() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("a.journal");
         let first = open(&path).0;
@@ -268,7 +268,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_json_costs_only_itself() {
+    fn an_unserialisable_record_loses_only_itself() {
         let folder = tempfile::tempdir().expect("a folder");
         let (journal, _) = open(&folder.path().join("a.journal"));
         journal.append(&1.0).expect("a line");
@@ -291,7 +291,7 @@ mod tests {
     /// This happens if a pool of processes is created while a journal is open.
     #[cfg(unix)]
     #[test]
-    fn what_another_process_inherited_is_unlocked() {
+    fn inherited_descriptors_are_unlocked() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("a.journal");
         let (journal, _) = open(&path);

@@ -30,7 +30,7 @@ mod tests {
     proptest! {
         /// After changing, removing or adding a byte, reading returns the written record or nothing.
         #[test]
-        fn a_changed_line_is_never_believed(
+        fn a_changed_line_never_reads_as_another_record(
             record in (any::<f64>().prop_filter("JSON has no others", |value| value.is_finite()), ".*"),
             at in any::<prop::sample::Index>(),
             byte in any::<u8>(),
@@ -51,7 +51,7 @@ mod tests {
     }
 
     #[test]
-    fn every_changed_digit_is_noticed() {
+    fn every_changed_digit_is_rejected() {
         let line = of(&0.0123456789).expect("JSON");
         for at in (0..line.len()).filter(|&at| line[at].is_ascii_digit()) {
             let mut changed = line.clone();
@@ -61,7 +61,7 @@ mod tests {
     }
 
     #[test]
-    fn what_has_no_checksum_or_a_wrong_one_is_not_believed() {
+    fn lines_without_a_valid_checksum_are_rejected() {
         let wrong = format!("{} 1.0", checksum(b"2.0"));
         for line in ["1.0", " 1.0", &wrong, "", " ", "null", "\0"] {
             assert_eq!(read::<f64>(line.as_bytes()), None, "{line}");

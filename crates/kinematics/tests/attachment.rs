@@ -75,7 +75,7 @@ proptest! {
 
 /// A joint about −z that is followed with a negative multiplier, and a fixed joint.
 #[test]
-fn motions_are_as_the_file_has_them() {
+fn attachment_motions_match_the_urdf() {
     let robot = RobotModel::from_urdf(
         r#"<robot name="r"><link name="a"/><link name="b"/><link name="c"/><link name="d"/>
              <joint name="j" type="revolute"><parent link="a"/><child link="b"/><axis xyz="0 0 -2"/>

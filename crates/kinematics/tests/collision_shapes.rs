@@ -44,7 +44,7 @@ fn faulty_shapes_stop_collision_alone() {
 }
 
 #[test]
-fn shapes_are_told_as_the_file_has_them() {
+fn collision_shapes_match_the_urdf() {
     let robot = two_shapes(r#"<capsule radius="0.1" length="0.8"/>"#, r#"<mesh filename="x" scale="1 2 3"/>"#);
     let shapes = robot.collision_shapes().unwrap();
     assert_eq!(shapes[0].geometry, Geometry::Capsule { radius: 0.1, length: 0.8 });

@@ -107,7 +107,7 @@ fn known_places_and_depths() {
 
 /// A point on the link of a mimic joint moves with the followed joint.
 #[test]
-fn joints_that_follow_are_counted_where_they_belong() {
+fn mimic_joints_count_towards_the_followed_joint() {
     let sphere = r#"<collision><geometry><sphere radius="0.1"/></geometry></collision>"#;
     let robot = RobotModel::from_urdf(&format!(
         r#"<robot name="r"><link name="a">{sphere}</link><link name="m"/><link name="b">{sphere}</link>
@@ -123,7 +123,7 @@ fn joints_that_follow_are_counted_where_they_belong() {
 
 /// Without a way out, as at the centre of a sphere, the result is some direction or none, never NaN.
 #[test]
-fn the_very_middle_is_survived() {
+fn coincident_centres_give_finite_results() {
     for shape in [r#"<sphere radius="0.3"/>"#, r#"<box size="1 1 1"/>"#, r#"<capsule radius="0.1" length="1"/>"#] {
         let robot = two_shapes(shape, shape);
         let body = (robot.clone(), SelfCollision::new(&robot, resolver).unwrap());

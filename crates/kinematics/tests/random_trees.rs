@@ -78,7 +78,7 @@ proptest! {
     }
 
     #[test]
-    fn every_way_to_a_frame_agrees((tree, q, _, index) in motion()) {
+    fn chain_and_robot_kinematics_agree((tree, q, _, index) in motion()) {
         let robot = RobotModel::from_urdf(&tree.urdf()).unwrap();
         let (link, q) = (link(&robot, index), DVector::from_vec(q));
         let chain = robot.chain(link);

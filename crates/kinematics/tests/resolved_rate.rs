@@ -40,7 +40,7 @@ proptest! {
 }
 
 #[test]
-fn undamped_the_task_is_met_and_the_pull_only_bends_the_rest() {
+fn undamped_steps_meet_the_task_exactly() {
     let j = DMatrix::from_fn(3, 7, |i, k| ((3 * i * k + 5 * k + i) as f64).sin());
     let (v, z) = (DVector::from_column_slice(&[0.3, -0.2, 0.5]), DVector::from_fn(7, |k, _| (k as f64).cos()));
     let with = step(0.0, &j, &v, &z).unwrap();

@@ -134,7 +134,7 @@ fn left_is_right_in_the_mirror() {
 }
 
 #[test]
-fn only_what_the_srdf_names_overlaps_at_zero() {
+fn only_srdf_pairs_overlap_at_zero() {
     let robot = RobotModel::from_urdf(UPPER_BODY).unwrap();
     let plain = SelfCollision::new(&robot, |_| None).unwrap();
     let names = |(a, b)| (robot.link_name(a), robot.link_name(b));

@@ -183,7 +183,7 @@ fn coordinates_too_far_to_be_placed_are_refused() {
 proptest! {
     /// Accepted input has finite poses and Jacobians.
     #[test]
-    fn what_is_placed_is_finite(exponent in -10.0..100.0_f64, negative in any::<bool>()) {
+    fn accepted_robots_have_finite_poses_and_jacobians(exponent in -10.0..100.0_f64, negative in any::<bool>()) {
         let robot = RobotModel::from_urdf(FAR_ROBOT).unwrap();
         let value = 10.0_f64.powf(exponent).min(1e100);
         let q = DVector::repeat(1, if negative { -value } else { value });

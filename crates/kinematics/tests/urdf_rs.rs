@@ -136,7 +136,7 @@ fn a_limit_of_zeros_alone_counts_as_missing() {
 /// Reasons for a separate reader of texts (docs/decisions/kinematics-urdf-reader.md). If one of these results changes, that
 /// page must change.
 #[test]
-fn what_urdf_rs_makes_of_texts() {
+fn urdf_rs_differs_from_our_reader() {
     let reads = |text: &str| urdf_rs::read_from_string(text).is_ok();
     let visual = |inside: &str| format!("<robot name=\"r\"><link name=\"a\"><visual>{inside}</visual></link></robot>");
     let sound = [

@@ -10,7 +10,7 @@ fn lower(matrix: &DMatrix<f64>) -> DMatrix<f64> {
 
 proptest! {
     #[test]
-    fn is_what_nalgebra_says(
+    fn factor_agrees_with_nalgebra(
         (a, b) in (size(), size()).prop_flat_map(|(m, c)| (matrix(m, m), matrix(m, c))), shift in 0.5..2.0,
     ) {
         let m = a.nrows();
@@ -54,7 +54,7 @@ proptest! {
     }
 
     #[test]
-    fn what_is_not_positive_definite_has_none(a in size().prop_flat_map(|m| matrix(m, m)), at in 0usize..40) {
+    fn indefinite_and_nan_matrices_have_no_factor(a in size().prop_flat_map(|m| matrix(m, m)), at in 0usize..40) {
         let m = a.nrows();
         let mut k = &a * a.transpose() + DMatrix::identity(m, m);
         k[(at % m, at % m)] = -1.0;

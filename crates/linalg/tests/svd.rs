@@ -17,6 +17,6 @@ proptest! {
 }
 
 #[test]
-fn what_is_not_a_number_has_none() {
+fn nan_matrices_have_no_svd() {
     assert!(singular_values(&DMatrix::from_element(3, 3, f64::NAN)).is_none());
 }

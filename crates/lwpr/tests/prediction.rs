@@ -70,7 +70,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(100))]
 
     #[test]
-    fn one_sweep_is_the_formulas_read_literally(
+    fn predictions_match_the_literal_formulas(
         case in case(200), exponent in -9.0..-1.0, output in 0_usize..3, at in 0_usize..200, away in 0.0..1.0,
     ) {
         let (n, output) = (case.n_in, output % case.n_out);
@@ -152,7 +152,7 @@ proptest! {
     }
 
     #[test]
-    fn a_batch_of_gradients_is_one_after_the_other(case in case(100), far in 0_usize..100) {
+    fn batch_gradients_equal_single_ones(case in case(100), far in 0_usize..100) {
         let predictor: Predictor = case.trained(1).predictor(0.001);
         let mut xs = case.xs.clone();
         xs.column_mut(far).fill(1e6);
@@ -173,7 +173,7 @@ proptest! {
 
     /// Small batches stay on one thread; batches large enough for several give the same results.
     #[test]
-    fn a_batch_is_one_query_after_the_other(case in case(100), far in 0_usize..100) {
+    fn batch_predictions_equal_single_ones(case in case(100), far in 0_usize..100) {
         let model = case.trained(1);
         let predictor = model.predictor(0.001);
         let mut xs = case.xs.clone();

@@ -20,7 +20,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(60))]
 
     #[test]
-    fn it_is_lwpr_of_centred_outputs_divided_by_their_spread(case in case(200)) {
+    fn model_equals_lwpr_of_standardised_outputs(case in case(200)) {
         let model = fitted(&training(&case), &case);
         let n = case.xs.ncols() as f64;
         let mean = case.ys.column_mean();
@@ -74,7 +74,7 @@ proptest! {
     }
 
     #[test]
-    fn what_is_read_back_predicts_the_same_bits(case in case(150), cutoff in 0.0..0.1) {
+    fn stored_models_predict_the_same_bits(case in case(150), cutoff in 0.0..0.1) {
         let model = fitted(&training(&case), &case).with_cutoff(cutoff).unwrap();
         let stored: StandardisedModel = serde_json::from_str(&serde_json::to_string(&model).unwrap()).unwrap();
         prop_assert_eq!((stored.cutoff(), stored.mean()), (cutoff, model.mean()));
@@ -113,7 +113,7 @@ fn a_bad_output_is_named_where_it_stands() {
 }
 
 #[test]
-fn what_is_refused() {
+fn invalid_training_and_stored_models_are_refused() {
     let (xs, ys) = (DMatrix::from_fn(2, 64, |i, j| (j * (i + 2)) as f64 * 0.1), DMatrix::repeat(1, 64, 7.0));
     let fit = |training: Training| {
         training.fit(xs.as_view(), ys.as_view(), &mut ChaCha8Rng::seed_from_u64(1)).map(|_| ()).unwrap_err()

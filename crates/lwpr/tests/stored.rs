@@ -36,7 +36,7 @@ fn a_metric_has_as_many_numbers_as_its_shape_says() {
 }
 
 #[test]
-fn models_that_cannot_be() {
+fn invalid_models_are_refused() {
     let good = serde_json::to_value(trained(Metric::Diagonal)).unwrap();
     assert!(serde_json::from_value::<Lwpr>(good.clone()).is_ok());
     let spoil: [(&str, Value); 14] = [
@@ -66,7 +66,7 @@ fn models_that_cannot_be() {
 }
 
 #[test]
-fn predictors_that_cannot_be() {
+fn invalid_predictors_are_refused() {
     for metric in [Metric::Diagonal, Metric::Full] {
         let good = serde_json::to_value(trained(metric).predictor(0.001)).unwrap();
         assert!(serde_json::from_value::<Predictor>(good.clone()).is_ok());

@@ -31,7 +31,7 @@ proptest! {
     }
 
     #[test]
-    fn a_stored_model_goes_on_as_if_nothing_had_happened(case in case(300), at in 1_usize..299) {
+    fn a_stored_model_resumes_training_identically(case in case(300), at in 1_usize..299) {
         let mut whole = case.model();
         train_online(&case, 0..300, &mut whole);
         let mut first = case.model();
@@ -45,7 +45,7 @@ proptest! {
     }
 
     #[test]
-    fn threads_decide_nothing_and_the_seed_decides(case in case(200)) {
+    fn results_depend_on_the_seed_not_on_threads(case in case(200)) {
         let run = |threads: usize, seed: u64| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
             pool.install(|| {
@@ -74,7 +74,7 @@ proptest! {
     }
 
     #[test]
-    fn outputs_do_not_know_each_other(case in case(200)) {
+    fn outputs_are_learnt_independently(case in case(200)) {
         let together = case.trained(1).predictor(0.001);
         for output in 0..case.n_out {
             let mut alone = case.clone();

@@ -99,7 +99,7 @@ proptest! {
     }
 
     #[test]
-    fn what_varies_a_little_is_judged(constant in 0.1..10.0f64, exponent in -10.0..-3.0f64) {
+    fn small_variations_are_scored(constant in 0.1..10.0f64, exponent in -10.0..-3.0f64) {
         let phi = dvector![constant, constant * (1.0 + 10f64.powf(exponent))];
         prop_assert!(potential_nmse(&phi, &phi).unwrap() == 0.0);
         let reversed = dvector![phi[1], phi[0]];

@@ -135,7 +135,7 @@ proptest! {
     }
 
     #[test]
-    fn neither_units_nor_axes_nor_order_count(
+    fn errors_are_invariant_to_units_axes_and_order(
         case in case(), exponent in -290.0..290.0f64, velocity in vec(-2.0..2.0f64, 4), turn in 0..11usize,
     ) {
         let (truth, learnt) = (&case.truth, &case.learnt);

@@ -101,7 +101,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn finds_the_first_that_is_alike(
+        fn duplicates_and_mirror_images_name_the_first_match(
             movements in vec((1usize..3, 1usize..4, vec(prop_oneof![Just(0.0), Just(-0.0), Just(1.0)], 6)), 1..20),
         ) {
             let movements = movements.into_iter().map(|(dim, n, x)| DMatrix::from_column_slice(dim, n, &x[..dim * n]));

@@ -46,7 +46,7 @@ mod tests {
     proptest! {
         /// Shifting and scaling the values shifts the mean and scales both.
         #[test]
-        fn they_follow_the_values(values in prop::collection::vec(-5.0..5.0_f64, 2..40), by in -5.0..5.0_f64, times in 0.1..10.0_f64) {
+        fn mean_and_error_follow_shifts_and_scales(values in prop::collection::vec(-5.0..5.0_f64, 2..40), by in -5.0..5.0_f64, times in 0.1..10.0_f64) {
             let (mean, error) = mean_and_error(&values);
             let others: Vec<f64> = values.iter().map(|value| times * (value + by)).collect();
             let (other_mean, other_error) = mean_and_error(&others);

@@ -21,7 +21,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn of_two_middle_values_the_upper_one_counts() {
+    fn even_counts_give_the_upper_median() {
         assert_eq!(upper_median(vec![]), None);
         assert_eq!(upper_median(vec![7.0]), Some(7.0));
         assert_eq!(upper_median(vec![3.0, 1.0]), Some(3.0));
@@ -30,7 +30,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn it_is_the_one_in_the_middle_when_sorted(mut values in prop::collection::vec(-5.0..5.0_f64, 1..40)) {
+        fn median_is_the_middle_of_the_sorted_values(mut values in prop::collection::vec(-5.0..5.0_f64, 1..40)) {
             let found = upper_median(values.clone());
             values.sort_by(f64::total_cmp);
             prop_assert_eq!(found, Some(values[values.len() / 2]));

@@ -124,7 +124,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn what_is_found_is_whole_and_as_near_as_the_one_it_came_from(count in 1u16..2000, of_rate in any::<bool>(), off in -0.9e-3..0.9e-3_f64) {
+        fn whole_step_is_whole_and_nearest(count in 1u16..2000, of_rate in any::<bool>(), off in -0.9e-3..0.9e-3_f64) {
             let count = f64::from(count);
             let step = (if of_rate { 1.0 / count } else { count / 1000.0 }) * (1.0 + off);
             let found = whole_step(step);
@@ -135,7 +135,7 @@ mod tests {
     }
 
     #[test]
-    fn of_two_whole_steps_the_nearer_is_taken() {
+    fn the_nearer_of_two_whole_steps_is_used() {
         assert_eq!(whole_step(0.142_95), 0.143);
         assert_eq!(whole_step(0.142_87), 1.0 / 7.0);
         assert_eq!(whole_step(0.017_01), 0.017);

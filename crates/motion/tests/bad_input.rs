@@ -73,7 +73,7 @@ fn several_trajectories() {
 }
 
 #[test]
-fn messages_say_what_where_and_what_next() {
+fn messages_name_fault_place_and_remedy() {
     let error = Demonstrations::from_states([states(2, 4), with(states(2, 4), 1, 3, f64::INFINITY)], 0.1);
     let message = error.unwrap_err().to_string();
     for part in ["trajectory 1", "states", "sample 3", "dimension 1", "inf", "drop or interpolate"] {

@@ -10,7 +10,7 @@ fn movement() -> Trajectory {
 }
 
 #[test]
-fn it_stays_when_states_change() {
+fn context_is_kept_when_states_change() {
     let with =
         movement().with_velocities(DMatrix::repeat(2, 4, 1.0)).unwrap().with_context(dvector![3.0, -1.0, 2.0]).unwrap();
     assert_eq!(with.state_in_context(1), dvector![1.0, 2.0, 3.0, -1.0, 2.0]);
@@ -22,7 +22,7 @@ fn it_stays_when_states_change() {
 }
 
 #[test]
-fn it_is_finite_and_all_movements_have_one_alike() {
+fn contexts_must_be_finite_and_of_equal_length() {
     let wrong = movement().with_context(dvector![1.0, f64::INFINITY]).unwrap_err();
     assert_eq!(wrong, MotionError::ContextNotFinite { number: 1, value: f64::INFINITY });
     assert!(!wrong.to_string().contains("sample"), "{wrong}");

@@ -63,7 +63,7 @@ proptest! {
 }
 
 #[test]
-fn stamps_that_cannot_be() {
+fn invalid_stamps_are_refused() {
     let movement = movement(&[0.0, 1.0, 3.0], 0.1);
     let refused = |times: &[f64]| movement.clone().with_times(times.to_vec()).unwrap_err();
     assert_eq!(refused(&[0.0, 1.0]), MotionError::StampCount { times: 2, samples: 3 });

@@ -83,7 +83,7 @@ proptest! {
 }
 
 #[test]
-fn references_serve_as_what_they_refer_to() {
+fn references_implement_potential_and_policy() {
     let bowl = Bowl { weight: 0.5, centre: DVector::zeros(2) };
     let state = DVector::from_vec(vec![1.0, -2.0]);
     let potential: &dyn Potential = &bowl;

@@ -72,7 +72,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn a_band_is_as_wide_on_either_side_and_never_reaches_0_on_a_logarithmic_axis(mean in 1e-6..1e6, share in 0.0..1e3) {
+        fn bands_are_symmetric_and_positive_on_logarithmic_axes(mean in 1e-6..1e6, share in 0.0..1e3) {
             let sd = mean * share;
             let [low, high] = Axis::Linear.band(mean, sd);
             prop_assert!(((mean - low) - (high - mean)).abs() <= 1e-12 * high);

@@ -247,7 +247,7 @@ mod tests {
     }
 
     #[test]
-    fn every_point_has_its_mark_where_the_axis_has_its_value_and_the_last_has_the_name() {
+    fn marks_follow_the_axis_and_the_last_is_labelled() {
         let points = vec![(0.0, 0.01, 0.05), (50.0, 0.1, 0.0), (100.0, 1.0, 20.0)];
         let scene = panel(points, Axis::Logarithmic { lowest: 1e-3 }, [1e-3, 10.0]).sketch().scene;
         let circles = circles(&scene);
@@ -295,7 +295,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_beyond_the_axis_has_neither_mark_nor_name() {
+    fn points_beyond_the_axis_have_no_mark_or_name() {
         let points = vec![(0.0, 0.01, 0.0), (50.0, 0.1, 0.0), (100.0, 1000.0, 0.0)];
         let scene = panel(points, Axis::Logarithmic { lowest: 1e-3 }, [1e-3, 10.0]).sketch().scene;
         assert_eq!(circles(&scene).len(), 4);

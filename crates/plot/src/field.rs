@@ -67,7 +67,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_no_grid_is_refused() {
+    fn invalid_grids_are_refused() {
         let of = |columns: usize, rows: &[usize], places: usize| {
             let values = rows.iter().map(|&row| vec![0.0; row]).collect();
             Field::new(vec![0.0; columns], vec![0.0; places], values).map(|_| ())

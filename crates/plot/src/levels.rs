@@ -136,7 +136,7 @@ mod tests {
     }
 
     #[test]
-    fn values_stand_on_their_lines() {
+    fn contour_labels_lie_on_their_lines() {
         let field = bowl();
         let written = written(&field, &vec![vec![true; 41]; 41]);
         assert!(written.len() >= 4, "{written:?}");
@@ -146,7 +146,7 @@ mod tests {
     }
 
     #[test]
-    fn only_what_is_known_counts() {
+    fn contours_use_only_known_values() {
         let field = bowl();
         let known: Vec<Vec<bool>> =
             field.y().iter().map(|y| field.x().iter().map(|x| x.hypot(*y) <= 1.0).collect()).collect();

@@ -69,7 +69,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn no_name_is_on_another_and_their_mean_stays(mut wanted in prop::collection::vec(0.0..300.0, 1..9)) {
+        fn labels_do_not_overlap_and_keep_their_mean(mut wanted in prop::collection::vec(0.0..300.0, 1..9)) {
             wanted.sort_by(f64::total_cmp);
             let places = spread(&wanted, 16.0);
             prop_assert!(places.windows(2).all(|pair| pair[1] - pair[0] > 16.0 - 1e-9));

@@ -136,7 +136,7 @@ mod tests {
 
     #[cfg(feature = "space")]
     #[test]
-    fn pixels_stand_in_the_panel_that_they_are_of() {
+    fn pixels_are_placed_in_their_panel() {
         use crate::{Camera, Item, Paint, Space};
         use nalgebra::Point3;
 

@@ -270,7 +270,7 @@ mod tests {
     }
 
     #[test]
-    fn a_value_that_two_layers_have_is_put_on_its_line_once() {
+    fn equal_levels_of_two_layers_are_labelled_once() {
         let field = Field::new(vec![0.0, 1.0], vec![0.0, 1.0], vec![vec![0.0, 1.0], vec![1.0, 2.0]]).unwrap();
         let layer = Layer::Levels { field, known: vec![vec![true; 2]; 2], label: "equal".to_owned() };
         let heights = |layers: Vec<Layer>| {

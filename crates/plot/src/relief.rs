@@ -75,7 +75,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn it_is_no_mirror_image_and_up_is_up() {
+    fn relief_is_right_handed_with_z_up() {
         let dots = vec![(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)];
         let extent = [(-1.0, -2.0, -1.0), (3.0, 2.0, 1.0)];
         let labels = ["x", "y", "z"].map(str::to_owned);

@@ -128,7 +128,7 @@ fn the_places_of_all_files_are_known() {
 
 /// A push is found in the files that are read at once, even if they are few.
 #[test]
-fn pushes_are_found_at_hand() {
+fn pushes_are_found_in_files_read_at_once() {
     let folder = rails(5, 1.0, 0.2);
     for at_once in ["20kB", "all"] {
         let fitted = run_in(folder.path(), &format!("fit {} --at-once {at_once} -o m.json", all_files()));
@@ -196,7 +196,7 @@ fn parts_that_do_not_fit_are_refused() {
 /// An interrupted fit resumes with the unread files and gives the same model; files that have changed since are read again, and so are all
 /// files with other options.
 #[test]
-fn an_interrupted_fit_goes_on() {
+fn an_interrupted_fit_resumes() {
     let folder = folder(0.1);
     let path = folder.path();
     let files = all_files();
@@ -394,7 +394,7 @@ fn pieces_of_one_file_give_one_model() {
 
 /// Movements have the same names as in the whole file, messages give its line numbers, and each file is listed once.
 #[test]
-fn pieces_say_what_the_files_say() {
+fn pieces_keep_names_and_line_numbers() {
     let folder = large("a.csv");
     let path = folder.path();
     let text = std::fs::read_to_string(path.join("a.csv")).unwrap();
@@ -455,7 +455,7 @@ fn pieces_say_what_the_files_say() {
 /// Ctrl-C while digests are made, in several attempts, since a fast machine may finish before the signal arrives.
 #[cfg(target_os = "linux")]
 #[test]
-fn an_interrupt_says_that_the_same_command_goes_on() {
+fn an_interrupt_explains_how_to_resume() {
     use std::process::{Command, Stdio};
     let folder = large("large.csv");
     let (path, kept) = (folder.path(), folder.path().join("m.json.unfinished"));

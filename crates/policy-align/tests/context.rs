@@ -214,7 +214,7 @@ fn with(context: ContextUse) -> PrepareOptions {
 }
 
 #[test]
-fn only_what_is_called_a_context_is_found_to_be_one() {
+fn only_channels_named_like_contexts_are_detected() {
     let of_episode = |k: usize, _: usize| k as f64;
     let names = |context: &[policy_align::StateChannel]| context.iter().map(|of| of.name.clone()).collect::<Vec<_>>();
     let found = prepare(recordings("load", of_episode), &PrepareOptions::default()).unwrap();
@@ -248,7 +248,7 @@ fn few_contexts_are_doubted() {
 }
 
 #[test]
-fn a_context_that_is_none_is_refused() {
+fn invalid_contexts_are_refused() {
     let refused = |name: &str, goals: fn(usize, usize) -> f64| {
         let error = prepare(recordings("y", goals), &with(ContextUse::Named(vec![name.to_owned()]))).unwrap_err();
         assert!(matches!(error, PrepareError::Context { .. }), "{error}");

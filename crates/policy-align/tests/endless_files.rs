@@ -28,7 +28,7 @@ fn soon(line: &str) -> Ran {
 }
 
 #[test]
-fn what_has_no_end_is_refused_by_its_name() {
+fn endless_files_are_refused_by_name() {
     assert!(Command::new("mkfifo").arg(folder().join("waiting.json")).status().unwrap().success());
     // A sparse file, whose bytes are not on disk.
     File::create(folder().join("huge.json")).unwrap().set_len(1 << 42).unwrap();

@@ -140,7 +140,7 @@ fn alike(found: &str, expected: &str) -> bool {
 
 /// `UPDATE_SESSION=1 cargo test -p policy-align --test examples` regenerates the outputs of the page.
 #[test]
-fn the_session_of_the_page_happens() {
+fn documented_session_is_reproduced() {
     let page = std::fs::read_to_string(examples().join(PAGE)).unwrap();
     let folder = tempfile::tempdir().unwrap();
     for name in ["toy.csv", "rails.csv", "wall.toml"] {

@@ -152,7 +152,7 @@ fn every_learner_acts_as_its_model() {
 }
 
 #[test]
-fn names_of_functions_are_names_and_comments_stay_comments() {
+fn function_names_are_checked_and_comments_escaped() {
     let mut model = direct(&toy(3, 4));
     for name in ["", "1st", "a-b", "int", "Z", "f(", "é", "log", "powf", "y1l", "isnan"] {
         let c = CSource { name: name.to_owned(), ..CSource::default() };
@@ -193,7 +193,7 @@ fn there_is_no_action_outside_the_data() {
 }
 
 #[test]
-fn what_is_not_finite_is_not_known() {
+fn non_finite_states_are_unknown() {
     if compiler().is_none() {
         return;
     }

@@ -118,7 +118,7 @@ fn units_are_learnt_without_each_constraint() {
 }
 
 #[test]
-fn decisions_say_what_was_done() {
+fn decisions_report_the_options_used() {
     let prepared = prepared(&few());
     let value = |options: &FitOptions, what: &str| {
         let fit = fit(&prepared, options).unwrap();
@@ -142,7 +142,7 @@ fn decisions_say_what_was_done() {
 }
 
 #[test]
-fn it_can_be_stopped_at_every_step() {
+fn a_fit_can_be_cancelled_at_every_step() {
     let prepared = prepared(&few());
     for learner in LEARNERS {
         let mut steps = Vec::new();
@@ -191,7 +191,7 @@ fn one_noisy_movement() {
 /// Parts of one or two movements do not show the policy's error elsewhere; the disagreement of their halves does. A limit cycle that is
 /// traversed many times appears in each half.
 #[test]
-fn one_or_two_movements_expect_what_their_halves_show() {
+fn few_movements_expect_the_error_of_their_halves() {
     for count in [1, 2] {
         let case = Case::of(&Plane { count: 12, ..Plane::default() }.potential(&parabola(), 5), count, Has::Velocities);
         let numbers = fit(&prepared(&case), &small(LearnerChoice::Auto)).unwrap().trust.numbers;
@@ -210,7 +210,7 @@ fn one_or_two_movements_expect_what_their_halves_show() {
 }
 
 #[test]
-fn other_movements_and_the_truth() {
+fn evaluation_compares_new_movements_with_the_truth() {
     let all = Plane { count: 12, ..Plane::default() }.potential(&parabola(), 5);
     let learnt = fit(&prepared(&Case::of(&all, 12, Has::Velocities)), &small(LearnerChoice::Auto)).unwrap();
     let others: Vec<_> = all[12..].to_vec();

@@ -57,7 +57,7 @@ fn remove(value: &mut Value, name: &str) {
 }
 
 #[test]
-fn what_is_wrong_is_said_in_one_line_with_its_place() {
+fn faults_are_reported_in_one_line_with_their_place() {
     let text = direct(&toy(3, 4)).to_json().unwrap();
     let said = |result: Result<Model, ModelError>| {
         let said = result.unwrap_err().to_string();
@@ -104,7 +104,7 @@ fn numbers_that_cannot_be_read_again_are_not_written() {
 }
 
 #[test]
-fn contradictions_are_refused_though_the_checksum_fits() {
+fn contradictory_models_are_refused() {
     let good = direct(&toy(3, 4));
     let refused = |change: fn(&mut Model), place: &str| {
         let mut model = good.clone();
@@ -132,7 +132,7 @@ fn contradictions_are_refused_though_the_checksum_fits() {
 }
 
 #[test]
-fn no_truncation_is_a_model() {
+fn truncated_models_are_refused() {
     let text = direct(&toy(3, 4)).to_json().unwrap();
     let text = text.trim_end().as_bytes();
     for length in 0..text.len() {
@@ -142,7 +142,7 @@ fn no_truncation_is_a_model() {
 }
 
 #[test]
-fn no_flipped_bit_is_another_model() {
+fn a_flipped_bit_never_gives_another_model() {
     let model = direct(&toy(3, 4));
     let text = model.to_json().unwrap();
     for at in 0..text.len() {
@@ -215,7 +215,7 @@ fn damaged_models_are_refused_in_one_line_at_once() {
 
 proptest! {
     #[test]
-    fn no_changed_byte_is_another_model(at in any::<prop::sample::Index>(), byte in any::<u8>(), insert in any::<bool>()) {
+    fn a_changed_byte_never_gives_another_model(at in any::<prop::sample::Index>(), byte in any::<u8>(), insert in any::<bool>()) {
         thread_local! { static TEXT: String = direct(&toy(3, 4)).to_json().unwrap(); }
         let text = TEXT.with(Clone::clone);
         let mut bytes = text.clone().into_bytes();

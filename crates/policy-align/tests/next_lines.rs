@@ -113,7 +113,7 @@ fn spirals(header: &str, row: impl Fn(usize, usize, [f64; 2]) -> String) -> Stri
 
 /// Files that cannot be read, or are read differently, without flags.
 #[test]
-fn flags_stay() {
+fn suggested_commands_keep_the_flags() {
     let folder = tempfile::tempdir().unwrap();
     let write = |name: &str, text: String| std::fs::write(folder.path().join(name), text).unwrap();
     write("twice.csv", spirals("x,y,x,y,take\n", |take, _, [x, y]| format!("{x},{y},0,1,{take}\n")));

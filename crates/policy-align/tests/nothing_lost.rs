@@ -160,7 +160,7 @@ fn half_precision() -> Vec<u8> {
 }
 
 #[test]
-fn what_a_reader_finds_is_told_once_and_stays_with_the_model() {
+fn reader_findings_are_reported_once_and_stored() {
     let toy = fs::read_to_string(examples().join("toy.csv")).unwrap();
     let commas = toy.replace(',', ";").replace('.', ",");
     let bag = folder("toy.csv", &toy);

@@ -38,7 +38,7 @@ fn pages() -> Vec<PathBuf> {
 }
 
 #[test]
-fn no_page_is_wider_than_its_window_and_all_of_it_is_right() {
+fn pages_fit_every_window_without_errors() {
     for file in pages() {
         let Some(mut page) = Page::open(&file) else { return };
         for width in WIDTHS {
@@ -74,7 +74,7 @@ fn pages_and_their_pictures_are_light_or_dark_as_the_reader_prefers() {
 }
 
 #[test]
-fn the_picture_of_a_policy_says_what_it_shows() {
+fn policy_pictures_have_titles_axes_and_legends() {
     assert_eq!(run("plot toy.json -o field.svg --files toy.csv --rollout 1.5,1").code, Some(0));
     let svg = std::fs::read_to_string(folder().join("field.svg")).unwrap();
     assert!(svg.contains("width=\"660\" height=\"680\""));

@@ -104,7 +104,7 @@ fn a_doubtful_verdict_shows_every_finding_that_casts_doubt() {
 }
 
 #[test]
-fn what_was_written_is_named_and_training_data_are_not_a_test() {
+fn written_files_and_used_training_data_are_reported() {
     let ran = run("rollout toy.json --from 1.5,1 --plot named.svg");
     assert!(ran.out.contains("written      named.svg\n"), "{}", ran.out);
     std::fs::copy(folder().join("toy.csv"), folder().join("same-bytes.csv")).unwrap();
@@ -251,7 +251,7 @@ fn words(text: &str) -> String {
 /// An error along the motion does not measure other directions: if the true policy is known, `--require` applies to
 /// all directions.
 #[test]
-fn an_error_is_required_in_all_directions_where_it_is_known() {
+fn require_covers_all_directions_if_the_truth_is_known() {
     let rows = std::fs::read_to_string(folder().join("toy.csv")).unwrap();
     let (head, rows) = rows.split_once('\n').unwrap();
     // A true policy that differs from the learnt one.
@@ -277,7 +277,7 @@ fn an_error_is_required_in_all_directions_where_it_is_known() {
 
 /// A robot without effect is reported, and one with effect appears among the decisions; an unusable one is refused.
 #[test]
-fn what_a_robot_changes_is_said() {
+fn effects_of_a_robot_are_reported() {
     let link = |name: &str| {
         format!(r#"<link name="{name}"><inertial><origin xyz="1 0 0"/><mass value="1"/></inertial></link>"#)
     };
@@ -302,7 +302,7 @@ fn what_a_robot_changes_is_said() {
 
 /// Two errors that are measured differently have different names.
 #[test]
-fn errors_of_a_fit_say_what_they_are_relative_to() {
+fn fit_errors_name_their_reference() {
     let out = words(&run("fit toy.csv -o errors.json --hold-out 20%").out);
     for said in [
         "constraints detected: error relative to the motion ",
@@ -348,7 +348,7 @@ fn no_colour_goes_into_pipes_and_quiet_is_quiet() {
 }
 
 #[test]
-fn predictions_of_a_file_and_of_standard_input_are_those_of_the_model() {
+fn file_and_stdin_predictions_match_the_model() {
     let text = "y,other,x\n1.2,9,0.3\n-0.5,9,0.7\n90,9,90\n";
     std::fs::write(folder().join("states.csv"), text).unwrap();
     let ran = run("predict toy.json states.csv");
@@ -419,7 +419,7 @@ fn the_end_of_constraints_is_named() {
 }
 
 #[test]
-fn roll_outs_for_viewers_are_those_of_rollout() {
+fn exported_roll_outs_equal_those_of_rollout() {
     assert_eq!(
         run("export toy.json --to mcap --from 1.5,1 --from -1,0.5 --constraint wall.toml -o two.mcap").code,
         Some(0)
@@ -519,7 +519,7 @@ fn a_share_of_the_episodes_is_held_out() {
 }
 
 #[test]
-fn the_page_of_a_check_says_what_the_check_says() {
+fn check_page_matches_the_check() {
     assert_eq!(run("check toy.csv --html page.html").code, Some(0));
     let page = std::fs::read_to_string(folder().join("page.html")).unwrap();
     assert!(page.contains("All checks passed") && page.contains("data:image/svg+xml"));
@@ -630,7 +630,7 @@ fn a_movement_that_is_not_aligned_is_left_out_by_name() {
 /// The user may choose between two readings, which removes the doubt; the hint mentions it if another learner was
 /// requested.
 #[test]
-fn the_choice_between_two_readings_is_offered_where_it_is_heeded() {
+fn a_reading_can_be_chosen_where_it_has_effect() {
     write_under_one_constraint("readings.csv");
     for (flags, verdict, next) in [
         ("", "doubtful", "set --reading free or --reading constrained"),

@@ -159,7 +159,7 @@ proptest! {
 
 /// Several chunks, whose index contains every message of every topic.
 #[test]
-fn a_robot_of_the_project_that_fills_chunks() {
+fn a_long_recording_fills_several_chunks() {
     let urdf = std::fs::read_to_string("../../robots/seven_joint_arm.urdf").unwrap();
     let names: Vec<String> =
         RobotModel::from_urdf(&urdf).unwrap().joints().iter().map(|joint| joint.name().to_owned()).collect();
@@ -227,7 +227,7 @@ fn robots_that_do_not_fit_are_refused() {
 }
 
 #[test]
-fn the_program_writes_robots_and_says_what_is_wrong() {
+fn program_writes_robots_and_reports_faults() {
     std::fs::write(folder().join("press.urdf"), ROBOT).unwrap();
     let two = ROBOT.replace("type=\"continuous\"", "type=\"fixed\"");
     std::fs::write(folder().join("two.urdf"), two).unwrap();

@@ -45,7 +45,7 @@ fn last(path: &Path) -> DVector<f64> {
 }
 
 #[test]
-fn it_comes_to_rest_where_the_potential_is_least() {
+fn roll_out_rests_at_the_minimum_of_the_potential() {
     let path = follow(&RollOut { seconds: Some(400.0), ..RollOut::default() }, &dvector![1.5, 1.0]);
     assert_eq!(path.stop, Stop::AtRest);
     assert!(last(&path).norm() < 0.1, "{}", last(&path));
@@ -71,7 +71,7 @@ fn rest_does_not_depend_on_the_step() {
 }
 
 #[test]
-fn it_agrees_with_small_steps_of_another_method() {
+fn roll_out_agrees_with_small_midpoint_steps() {
     let (model, start) = (toy_model(), dvector![-1.2, 0.8]);
     let path = RollOut { seconds: Some(20.0), ..RollOut::default() }.follow(&model, &start).unwrap();
     let (policy, mut x) = (model.policy(), start);
@@ -83,7 +83,7 @@ fn it_agrees_with_small_steps_of_another_method() {
 }
 
 #[test]
-fn it_agrees_with_the_teachers_roll_out_under_a_constraint() {
+fn roll_out_agrees_with_the_teachers_under_a_constraint() {
     let model = toy_model();
     let constraint = constraints::LinearConstraint::new(nalgebra::dmatrix![1.0, 0.5]).unwrap();
     let teacher = Teacher { time_step: 0.01, n_samples: 1001, ..Teacher::default() };
@@ -116,7 +116,7 @@ fn constraints_hold_at_their_times_only() {
 }
 
 #[test]
-fn rows_and_functions_do_what_a_file_does() {
+fn rows_and_functions_act_like_constraint_files() {
     let start = dvector![1.5, 1.0];
     let of = |constraints| follow(&RollOut { constraints, seconds: Some(12.0), ..RollOut::default() }, &start);
     let file = of(constraints("[[constraint]]\nnormal = [1, 0.5]"));
@@ -170,7 +170,7 @@ fn constraints_that_fit_no_state_are_refused() {
 }
 
 #[test]
-fn a_ball_is_gone_around() {
+fn roll_out_passes_around_a_ball() {
     let set = constraints("[[constraint]]\npoint = [0.5, 0.55]\nradius = 0.3\n");
     let free = follow(&RollOut::default(), &dvector![1.3, 1.25]);
     let distance =
@@ -209,7 +209,7 @@ fn a_hand_stays_in_its_plane_and_out_of_a_ball() {
 }
 
 #[test]
-fn limits_and_the_end_of_the_data_stop_it() {
+fn limits_and_the_edge_of_the_data_stop_a_roll_out() {
     let limits = Some(JointLimits::from_urdf(TIP, &channels()).unwrap());
     let path = follow(&RollOut { limits: limits.clone(), ..RollOut::default() }, &dvector![-1.1, 0.1]);
     assert!(path.stop != Stop::Limit("x".to_owned()));
@@ -244,7 +244,7 @@ fn limits_and_the_end_of_the_data_stop_it() {
 }
 
 #[test]
-fn what_cannot_be_followed_is_refused() {
+fn invalid_roll_outs_are_refused() {
     let (model, good) = (toy_model(), dvector![1.0, 1.0]);
     let refused = |roll_out: RollOut, start: &DVector<f64>| roll_out.follow(&model, start).unwrap_err();
     let error = refused(RollOut::default(), &dvector![1.0]);
@@ -301,7 +301,7 @@ fn actions_that_are_not_finite_or_huge_are_errors() {
 }
 
 #[test]
-fn a_long_time_in_few_samples_is_given_up() {
+fn too_many_integration_steps_are_refused() {
     let roll_out = RollOut { seconds: Some(1e300), step: Some(1e299), ..RollOut::default() };
     let mut error = None;
     let seconds = cost(|| error = roll_out.follow(&toy_model(), &dvector![1.5, 1.0]).err());
@@ -343,7 +343,7 @@ fn the_cost_of_many_constraints_in_turn_is_that_of_each() {
 }
 
 #[test]
-fn constraint_files_say_what_is_wrong() {
+fn faults_of_constraint_files_are_reported() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("arm.urdf"), TIP).unwrap();
     let said = |text: &str| ConstraintSet::from_toml(text, &channels(), folder.path()).unwrap_err().to_string();

@@ -18,7 +18,7 @@ fn the_help_fits_a_terminal() {
 
 #[cfg(not(feature = "ros2"))]
 #[test]
-fn a_build_without_ros_2_says_what_has_it() {
+fn a_build_without_ros_2_names_the_feature() {
     let ran = run("serve toy.json --ros2 --rate 20");
     assert_eq!((ran.code, ran.out.as_str()), (Some(2), ""));
     let lines = [

@@ -50,7 +50,7 @@ const WITHIN: std::ops::Range<f64> = -0.4..0.4;
 proptest! {
     /// Supported states yield the policy's action bit for bit; others stop the robot.
     #[test]
-    fn the_policy_where_it_is_supported(x in -4.0..4.0f64, y in -4.0..4.0f64) {
+    fn supported_states_give_the_policys_action(x in -4.0..4.0f64, y in -4.0..4.0f64) {
         let (policy, command) = (model().policy(), at(&mut controller(), [x, y]));
         let support = command.support.unwrap();
         if policy.is_supported(dvector![x, y].as_view()) {
@@ -66,7 +66,7 @@ proptest! {
 
     /// Joints are found by name, in any order, among others, and in separate messages.
     #[test]
-    fn the_order_of_a_message_is_free(
+    fn joints_are_found_in_any_message_order(
         [x, y] in prop::array::uniform2(WITHIN),
         order in Just(vec![("x", 0), ("y", 1), ("grip", 2), ("wrist", 3)]).prop_shuffle(),
         cut in 0..=4usize,
@@ -186,7 +186,7 @@ fn missing_joints_stop_and_are_named() {
 }
 
 #[test]
-fn reasons_say_what_and_where() {
+fn halt_reasons_name_quantity_and_joint() {
     let text = |state: [f64; 2]| at(&mut controller(), state).halt.unwrap().to_string();
     assert_eq!(text([f64::NAN, 0.0]), "the position of x is NaN");
     assert_eq!(text([0.0, f64::INFINITY]), "the position of y is inf");
@@ -198,7 +198,7 @@ fn reasons_say_what_and_where() {
 }
 
 #[test]
-fn what_cannot_be_served_is_refused() {
+fn invalid_controllers_are_refused() {
     let error = |joints: &[(&str, &str)], stale| VelocityController::new(model(), &pairs(joints), stale).unwrap_err();
     let texts = [
         (error(&[("x", "a"), ("z", "b")], 0.2), "the model has no channel 'z'; it has x, y"),

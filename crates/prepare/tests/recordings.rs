@@ -56,7 +56,7 @@ fn verdict(prepared: &Prepared, words: &str) -> Verdict {
 proptest! {
     /// A factor after preparation has the same effect as `--scale` before it, also on noise and on the findings on units.
     #[test]
-    fn rescaling_is_what_the_option_does(factor in -9.0..9.0f64, noise in prop::sample::select(vec![0.0, 0.01])) {
+    fn rescaling_equals_the_scale_option(factor in -9.0..9.0f64, noise in prop::sample::select(vec![0.0, 0.01])) {
         let factor = factor.exp();
         let noisy = |values: &mut DMatrix<f64>| {
             let shake = |at: usize| noise * (1e4 * (at as f64).sin()).fract();
@@ -89,7 +89,7 @@ proptest! {
 }
 
 #[test]
-fn nothing_is_said_of_good_recordings() {
+fn good_recordings_give_no_findings() {
     let prepared = prepared(&recordings());
     assert_eq!(prepared.findings, []);
     assert_eq!(prepared.left_out, []);
@@ -165,7 +165,7 @@ fn factors_have_names() {
 }
 
 #[test]
-fn velocities_that_are_none() {
+fn mismatched_velocities_are_doubted() {
     let shuffled = prepared(&changed(|episode| episode.velocities.as_mut().unwrap().swap_rows(0, 1)));
     assert_eq!(verdict(&shuffled, "recorded velocities do not match the steps"), Verdict::Doubtful);
     assert_eq!(shuffled.velocities, VelocitySource::Positions);
@@ -239,7 +239,7 @@ fn stamps() {
 }
 
 #[test]
-fn what_is_left_out() {
+fn copied_still_and_short_episodes_are_left_out() {
     let mut twice = recordings();
     twice.episodes.extend(recordings().episodes.into_iter().take(2));
     let twice = prepared(&twice);
@@ -275,7 +275,7 @@ proptest! {
 
     /// A copied episode, at any position and with any name, does not change the training data.
     #[test]
-    fn a_copy_teaches_nothing(of in 0..12usize, to in 0..13usize, name in "[a-z]{1,8}") {
+    fn copied_episodes_do_not_change_the_training_data(of in 0..12usize, to in 0..13usize, name in "[a-z]{1,8}") {
         let mut copied = recordings();
         let copy = Episode { name, ..copied.episodes[of].clone() };
         copied.episodes.insert(to.max(of + 1), copy);
@@ -301,7 +301,7 @@ proptest! {
 }
 
 #[test]
-fn what_the_reader_found_stays_first() {
+fn reader_findings_come_first() {
     let found = Finding { verdict: Verdict::Good, what: "the bag ends".to_owned(), next: "repair it".to_owned() };
     let mut cut = recordings();
     cut.findings.push(found.clone());
@@ -312,7 +312,7 @@ fn what_the_reader_found_stays_first() {
 }
 
 #[test]
-fn rest_at_the_ends_is_said_and_trimmed() {
+fn rest_at_the_ends_is_reported_and_trimmed() {
     let resting = changed(|episode| {
         for i in 0..15 {
             episode.positions.set_column(i, &episode.positions.column(15).into_owned());
@@ -376,7 +376,7 @@ fn a_jump_is_cut() {
 }
 
 #[test]
-fn angles_that_wrap_go_on() {
+fn wrapped_angles_are_unwrapped() {
     let turn = std::f64::consts::TAU;
     let winding = |wrapped: bool| {
         changed(|episode| {
@@ -481,7 +481,7 @@ fn smoothing_as_requested() {
 }
 
 #[test]
-fn what_looks_like_a_fault_may_stay() {
+fn apparent_faults_can_be_kept() {
     let spiked = changed(|episode| episode.positions.column_mut(20).add_scalar_mut(3.0));
     let keep = PrepareOptions { jumps: Repair::Keep, wraps: Repair::Keep, ..PrepareOptions::default() };
     let kept = prepare(&spiked, &keep).unwrap();
@@ -572,7 +572,7 @@ fn velocities_of_a_held_channel_are_noise_or_do_not_belong_to_it() {
 }
 
 #[test]
-fn what_cannot_be_learnt_from() {
+fn unusable_input_is_refused() {
     let refused = |recordings: &Recordings| prepare(recordings, &PrepareOptions::default()).unwrap_err();
     let none = Recordings { episodes: Vec::new(), ..recordings() };
     assert_eq!(refused(&none), PrepareError::Empty);

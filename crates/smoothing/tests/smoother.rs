@@ -114,7 +114,7 @@ proptest! {
     /// Forward–backward sums, shrunk coefficients and running variances equal the sums over all segmentations, each
     /// with a dense covariance.
     #[test]
-    fn all_cuts_are_weighed(case in cases(3..9)) {
+    fn smoothing_sums_over_all_segmentations(case in cases(3..9)) {
         let smoothed = case.smooth();
         let all = DMatrix::from_fn(case.states[0].nrows(), 2 * case.states[0].ncols(), |j, i| {
             case.states[i % 2][(j, i / 2)]
@@ -174,7 +174,7 @@ proptest! {
 
     /// Smoothing a reversed movement gives the reversed result.
     #[test]
-    fn time_has_no_direction(case in cases(5..25)) {
+    fn smoothing_is_invariant_to_time_reversal(case in cases(5..25)) {
         let backwards = |x: &DMatrix<f64>| DMatrix::from_columns(&x.column_iter().rev().collect::<Vec<_>>());
         let mut other = case.with(backwards, |t| -t);
         other.times.iter_mut().for_each(|times| times.reverse());

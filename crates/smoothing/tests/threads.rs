@@ -22,7 +22,7 @@ fn demonstrations() -> Demonstrations {
 }
 
 #[test]
-fn one_two_and_eight() {
+fn results_are_equal_for_any_thread_count() {
     let demonstrations = demonstrations();
     let run = |threads: usize| -> (Smoothed, Fused) {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();

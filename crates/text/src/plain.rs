@@ -73,7 +73,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_cannot_be_seen_is_spelt_out_and_nothing_else() {
+    fn only_invisible_characters_are_escaped() {
         for text in ["x", "q̇ (rad/s)", "ω₁ → 左\t\n", "👩‍🚀", "❤️", "👩🏽‍❤️‍👩🏽", "می‌خواهم", "र्‍य", "a\u{a0}b\u{3000}c"]
         {
             assert!(matches!(plain(text), Cow::Borrowed(same) if same == text), "{text:?}");

@@ -56,7 +56,7 @@ mod tests {
 
     #[cfg(unix)]
     #[test]
-    fn what_cannot_be_seen_or_is_no_text_is_quoted_in_one_line() {
+    fn invisible_and_non_utf8_names_are_quoted_in_one_line() {
         use std::ffi::OsStr;
         use std::os::unix::ffi::OsStrExt as _;
         let is_there = Command::new("bash").arg("--version").output().is_ok();

@@ -145,7 +145,7 @@ mod tests {
     }
 
     #[test]
-    fn a_file_that_names_no_share_is_refused() {
+    fn invalid_shard_files_are_refused() {
         let folder = tempfile::tempdir().unwrap();
         let read = |text: &str| {
             std::fs::write(folder.path().join(FILE), text).unwrap();
@@ -168,7 +168,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_share_is_refused() {
+    fn invalid_shares_are_refused() {
         for text in ["", "3", "0/3", "4/3", "1/0", "a/b", "-1/2", "1/2/3", "1.0/2"] {
             assert!(text.parse::<Shard>().unwrap_err().contains("2/8"), "{text}");
         }

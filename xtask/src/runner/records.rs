@@ -165,7 +165,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_written_is_found_again_bit_for_bit() {
+    fn records_are_read_back_bitwise() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("records.jsonl");
         let outcome = measured(0.1 + 0.2);

@@ -69,7 +69,7 @@ mod tests {
     }
 
     #[test]
-    fn two_files_that_use_each_other_are_found_by_what_ties_them() {
+    fn circular_uses_are_reported_with_their_items() {
         let a = "use super::b::{B, f};\npub struct A(B);\nfn g() { f(); }\n";
         let b = "pub struct B;\npub fn f() -> Option<crate::a::A> { None }\n";
         assert_eq!(
@@ -105,7 +105,7 @@ mod tests {
     }
 
     #[test]
-    fn a_module_and_an_item_of_one_name_are_told_apart() {
+    fn modules_and_items_of_one_name_are_distinguished() {
         let root = "mod sweep;\nmod query;\npub use sweep::sweep;\n";
         let query = "use crate::sweep::Kind;\npub struct Query(Kind);\n";
         let with = |sweep: &'static str| faults_of(&[("lib.rs", root), ("query.rs", query), ("sweep.rs", sweep)]);
@@ -114,7 +114,7 @@ mod tests {
     }
 
     #[test]
-    fn what_only_tests_use_and_other_crates_name_ties_nothing() {
+    fn uses_by_tests_and_other_crates_are_ignored() {
         let a = "pub struct A(super::b::B);\n";
         let root = ("lib.rs", "mod a;\nmod b;\n");
         let with = |b: &'static str| faults_of(&[root, ("a.rs", a), ("b.rs", b)]);
@@ -131,7 +131,7 @@ mod tests {
     }
 
     #[test]
-    fn a_part_may_use_the_whole_that_it_lies_in() {
+    fn a_submodule_may_use_its_parent() {
         let whole = "mod part;\npub struct Whole(part::Part);\n";
         let part = "pub struct Part(Option<Box<super::Whole>>, crate::Root);\n";
         let root = ("lib.rs", "mod a;\nmod b;\npub struct Root(a::Whole);\n");
@@ -143,7 +143,7 @@ mod tests {
     }
 
     #[test]
-    fn a_program_and_its_library_have_roots_of_their_own() {
+    fn programs_and_libraries_have_separate_roots() {
         let library = ("lib.rs", "mod a;\npub struct Root(a::A);\n");
         let program = ("main.rs", "use package::Root;\nmod cli;\nfn main() { cli::run(); }\n");
         assert!(

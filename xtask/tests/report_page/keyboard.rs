@@ -7,7 +7,7 @@ use crate::page;
 const FOCUSED: &str = "all.indexOf(document.activeElement)";
 
 #[test]
-fn tab_reaches_everything_in_order_and_it_is_seen() {
+fn tab_reaches_all_controls_in_order_and_visibly() {
     let Some(mut page) = page() else { return };
     page.prefer("prefers-reduced-motion", "reduce");
     page.evaluate::<()>(
@@ -44,7 +44,7 @@ fn the_first_stop_skips_the_contents() {
 }
 
 #[test]
-fn a_figure_is_enlarged_and_left_again() {
+fn figures_can_be_enlarged_and_closed() {
     let Some(mut page) = page() else { return };
     // While the page scrolls, a click would miss its target.
     page.prefer("prefers-reduced-motion", "reduce");
@@ -109,7 +109,7 @@ fn click_anywhere(page: &mut Page) {
 }
 
 #[test]
-fn what_is_folded_opens() {
+fn enter_opens_folded_parts() {
     let Some(mut page) = page() else { return };
     page.evaluate::<()>("document.querySelector('summary').focus()");
     page.press("Enter");

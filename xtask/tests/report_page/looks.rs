@@ -48,7 +48,7 @@ fn every_figure_is_shown_and_can_be_decoded() {
 }
 
 #[test]
-fn no_window_is_so_narrow_that_the_page_scrolls_sideways() {
+fn the_page_never_scrolls_sideways() {
     let Some(mut page) = page() else { return };
     for width in WIDTHS {
         page.resize(width, 800);
@@ -98,7 +98,7 @@ fn reservations_are_folded_under_their_table() {
 }
 
 #[test]
-fn names_in_tables_say_what_they_mean() {
+fn names_in_tables_are_explained() {
     let Some(mut page) = page() else { return };
     let explained: Vec<(String, String)> = page
         .evaluate("[...document.querySelectorAll('#table1 .grid abbr')].map(name => [name.textContent, name.title])");
@@ -111,7 +111,7 @@ fn names_in_tables_say_what_they_mean() {
 }
 
 #[test]
-fn the_printed_mean_is_seen_on_its_band_and_lower_is_no_praise() {
+fn printed_means_have_contrast_and_lower_verdicts_are_grey() {
     let Some(mut page) = page() else { return };
     for scheme in ["light", "dark"] {
         page.prefer("prefers-color-scheme", scheme);
@@ -174,7 +174,7 @@ const CONTRAST_OF: &str = r"((selector) => {
 })";
 
 #[test]
-fn the_contents_lead_to_every_part_and_tell_where_one_is() {
+fn contents_link_to_every_part_and_mark_the_current() {
     let Some(mut page) = page() else { return };
     page.prefer("prefers-reduced-motion", "reduce");
     let parts: Vec<String> = page.evaluate("[...document.querySelectorAll('nav a')].map(a => a.hash)");

@@ -25,14 +25,14 @@ fn page() -> Option<Page> {
 }
 
 #[test]
-fn nothing_is_complained_about_and_nothing_is_fetched() {
+fn page_logs_no_errors_and_fetches_nothing() {
     let Some(mut page) = page() else { return };
     assert_eq!(page.complaints(), Vec::<String>::new());
     assert_eq!(page.requests(), Vec::<String>::new());
 }
 
 #[test]
-fn what_is_wrong_with_a_page_is_noticed() {
+fn page_faults_are_reported() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("a page.html");
     let script = "console.error('said'); fetch('http://127.0.0.1:9/x').catch(() => {}); throw new Error('thrown')";

@@ -6,7 +6,7 @@ use crate::page;
 const SHEET: u32 = 688;
 
 #[test]
-fn what_is_folded_is_left_out() {
+fn folded_parts_are_not_printed() {
     let Some(mut page) = page() else { return };
     page.evaluate::<()>("document.querySelector('main details').open = true, undefined");
     page.show_as_printed();
@@ -18,7 +18,7 @@ fn what_is_folded_is_left_out() {
 }
 
 #[test]
-fn nothing_stands_at_the_very_edge() {
+fn printed_parts_keep_a_margin() {
     let Some(mut page) = page() else { return };
     page.resize(SHEET, 900);
     page.show_as_printed();
@@ -29,7 +29,7 @@ fn nothing_stands_at_the_very_edge() {
 }
 
 #[test]
-fn what_belongs_together_stays_together() {
+fn related_parts_are_not_split_across_sheets() {
     let Some(mut page) = page() else { return };
     page.show_as_printed();
     let broken = |page: &mut crate::Page, what: &str, property: &str| -> Vec<String> {

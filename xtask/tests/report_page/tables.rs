@@ -102,7 +102,7 @@ fn as_in_the_paper(measure: &str, value: &Value) -> String {
 }
 
 #[test]
-fn every_cell_is_shown_as_it_is() {
+fn every_cell_matches_the_results() {
     let Some(mut page) = page() else { return };
     let mut shown: BTreeMap<[String; 3], Vec<Shown>> = BTreeMap::new();
     for cell in page.evaluate::<Vec<Shown>>(SHOWN) {
@@ -194,7 +194,7 @@ fn the_opening_counts_every_printed_cell() {
 }
 
 #[test]
-fn what_is_not_reached_is_shown_at_once() {
+fn missed_cells_are_shown_in_the_opening() {
     let Some(mut page) = page() else { return };
     let text: String = page.evaluate("document.getElementById('glance').textContent");
     let missed = |cell: &Cell| ["higher", "differs"].map(Value::from).contains(&cell.value["verdict"]);

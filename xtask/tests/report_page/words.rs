@@ -21,7 +21,7 @@ fn the_rule_is_given_for_verdicts_that_occur() {
 }
 
 #[test]
-fn another_reading_is_told_apart() {
+fn cells_of_another_reading_are_listed_separately() {
     let Some(mut page) = page() else { return };
     let headings: Vec<String> = page.evaluate(
         "[...document.querySelectorAll('#glance ul.missed a')].filter(a => a.hash == '#table1-literal')
@@ -102,7 +102,7 @@ fn terms_are_not_broken() {
 }
 
 #[test]
-fn nothing_of_a_figure_is_read_out_twice() {
+fn figure_titles_are_read_out_once() {
     let Some(mut page) = page() else { return };
     let titles: Vec<String> = page.evaluate(
         "[...document.querySelectorAll('figcaption p:first-child strong')].map(title => title.textContent.replace(/\\.$/, ''))",

@@ -29,7 +29,7 @@ fn both(learner: &PolicyAlign, demonstrations: &Demonstrations) {
 }
 
 #[test]
-fn toy_systems_are_aligned_alike_without_h() {
+fn sparse_alignment_matches_dense_on_toy_systems() {
     for (n_trajectories, n_samples) in [(40, 40), (100, 100)] {
         for potential in [ToyPotential::parabola(), ToyPotential::sinusoidal()] {
             for seed in 0..50 {
@@ -62,37 +62,37 @@ fn upper_body() -> UpperBody {
 }
 
 #[test]
-fn grasps_are_aligned_alike_without_h() {
+fn sparse_alignment_matches_dense_on_grasps() {
     let grasp = Grasp::new(upper_body());
     sets(|rng| grasp.record(rng).unwrap());
 }
 
 #[test]
-fn bodies_of_22_joints_are_aligned_alike_without_h() {
+fn sparse_alignment_matches_dense_on_22_joint_bodies() {
     let body = HandInPlane::new(upper_body());
     sets(|rng| body.record(rng).unwrap());
 }
 
 #[test]
-fn three_link_arms_are_aligned_alike_without_h() {
+fn sparse_alignment_matches_dense_on_three_link_arms() {
     let arm = ThreeLinkArm::new(include_str!("../../../../robots/planar_three_link.urdf")).unwrap();
     sets(|rng| arm.record(rng).unwrap());
 }
 
 #[test]
-fn cycles_with_a_task_are_aligned_alike_without_h() {
+fn sparse_alignment_matches_dense_on_cycles_with_a_task() {
     sets(|rng| CyclesWithTask::default().record(rng).unwrap());
 }
 
 #[test]
-fn many_movements_are_aligned_alike_without_h() {
+fn sparse_alignment_matches_dense_on_many_movements() {
     let toy = ToySystem { n_trajectories: 500, n_samples: 60, ..ToySystem::default() };
     let recordings = toy.record(&mut ChaCha8Rng::seed_from_u64(3)).unwrap();
     both(&PolicyAlign::default(), &demonstrations(&recordings).unwrap());
 }
 
 #[test]
-fn a_long_chain_comes_apart_without_h() {
+fn sparse_alignment_splits_a_long_chain() {
     // Neighbours are linked by 1e4 thresholds or more, but λ₂ is smaller by (π / 760)².
     let mut x = 0.0;
     let movements = (0..760).map(|k| {
@@ -107,7 +107,7 @@ fn a_long_chain_comes_apart_without_h() {
 }
 
 #[test]
-fn no_number_of_threads_changes_a_bit() {
+fn results_are_bitwise_equal_for_any_thread_count() {
     let toy = ToySystem { n_trajectories: 400, n_samples: 50, ..ToySystem::default() };
     let demonstrations = demonstrations(&toy.record(&mut ChaCha8Rng::seed_from_u64(7)).unwrap()).unwrap();
     let aligned = |threads| {
@@ -121,7 +121,7 @@ fn no_number_of_threads_changes_a_bit() {
 }
 
 #[test]
-fn what_touches_is_named_without_all_distances() {
+fn sparse_alignment_names_touching_pairs() {
     // Two of three movements meet at a sample, and so do two others.
     let at = |x: f64| DMatrix::from_row_slice(2, 3, &[x, x + 1.0, x + 2.0, 0.0, x, 0.5]);
     let movements = [at(0.0), at(0.0), at(3.0), at(7.0), at(7.0)];
@@ -146,7 +146,7 @@ fn too_many_samples_for_the_memory_are_refused() {
 
 proptest! {
     #[test]
-    fn any_movements_are_aligned_alike_without_h(
+    fn sparse_alignment_matches_dense_on_random_movements(
         dim in 1usize..5, lengths in vec(2usize..30, 2..40), seed in any::<u64>(), exponent in -3.0..0.5_f64, narrow in any::<bool>(),
     ) {
         use rand::RngExt as _;

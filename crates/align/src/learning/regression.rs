@@ -40,7 +40,7 @@ mod tests {
     use proptest::prelude::*;
 
     #[test]
-    fn idle_dimensions_do_not_count() {
+    fn spread_ignores_nearly_constant_dimensions() {
         let states = DMatrix::from_row_slice(3, 4, &[3.0, -3.0, 3.0, -3.0, 7.0, 7.0, 7.0, 7.002, 1.0, 0.0, 1.0, 0.0]);
         assert!((spread(&states) - 4.625_f64.sqrt()).abs() < 1e-15);
         assert_eq!(spread(&DMatrix::from_element(2, 5, 0.1)), 1.0);

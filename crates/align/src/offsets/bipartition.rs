@@ -156,14 +156,14 @@ mod tests {
     }
 
     #[test]
-    fn parts_come_apart_and_the_largest_is_first() {
+    fn disconnected_parts_are_separated_largest_first() {
         let parts = graph(8, &[(1, 4, 2.0), (4, 6, 0.5), (0, 3, 1.0), (2, 7, 1.0)]);
         let partition = level(&parts).unwrap();
         assert_eq!(partition.groups, [vec![1, 4, 6], vec![0, 3], vec![2, 7], vec![5]]);
     }
 
     #[test]
-    fn splits_tell_how_groups_came_about() {
+    fn splits_record_their_cause_and_parts() {
         // Two groups of three: one connected by a link that is too weak, and one without a weak link.
         let links = [(0, 1, 1.0), (1, 4, 1e-12), (2, 3, 1.0), (3, 5, 1.0)];
         let partition = level(&graph(6, &links)).unwrap();
@@ -178,7 +178,7 @@ mod tests {
     }
 
     #[test]
-    fn weak_links_do_not_hold() {
+    fn links_below_the_threshold_are_cut() {
         // Two pairs joined by w have λ₂ ≈ w.
         let pairs = |weight| graph(4, &[(0, 2, 1.0), (1, 3, 1.0), (2, 3, weight)]);
         assert_eq!(level(&pairs(0.9e-8)).unwrap().groups, [[0, 2], [1, 3]]);
@@ -199,7 +199,7 @@ mod tests {
     }
 
     #[test]
-    fn many_lonely_trajectories_take_one_decomposition() {
+    fn many_singletons_take_at_most_one_decomposition() {
         // Separated one at a time, each with a decomposition, they would take minutes.
         let alone: Vec<Vec<usize>> = (0..300).map(|k| vec![k]).collect();
         let links: Vec<_> = (1..300).map(|k| (k - 1, k, 1e-12)).collect();

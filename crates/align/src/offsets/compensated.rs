@@ -31,7 +31,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn keeps_what_rounding_drops() {
+    fn compensated_sum_recovers_lost_digits() {
         let sum = |terms: &[f64]| {
             let mut sum = CompensatedSum::default();
             for &term in terms {

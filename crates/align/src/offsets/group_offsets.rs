@@ -74,7 +74,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn a_raised_potential_is_lowered_again(
+        fn raising_a_potential_lowers_its_offset(
             (positions, potentials) in movements(), raises in vec(-100.0_f64..100.0, 8), exponent in -3.0_f64..0.0,
         ) {
             let sigma_squared = 10.0_f64.powf(exponent);

@@ -123,7 +123,7 @@ mod tests {
         }
 
         #[test]
-        fn knows_the_components(
+        fn elimination_finds_the_components(
             count in 1usize..12, links in vec((0usize..12, 0usize..12), 0..12),
         ) {
             let mut weights = vec![0.0; count * count];

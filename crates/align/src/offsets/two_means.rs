@@ -64,7 +64,7 @@ mod tests {
     }
 
     #[test]
-    fn rounding_does_not_cut_what_lies_in_the_middle() {
+    fn rounding_does_not_split_coincident_points() {
         // The third point occurs four times, shifted by tiny amounts.
         let hair = 1e-15;
         let x = [-1.0, 1.0, hair, -hair, 0.0, 2.0 * hair];
@@ -73,7 +73,7 @@ mod tests {
     }
 
     #[test]
-    fn a_mass_is_so_many_rows() {
+    fn a_mass_counts_as_repeated_rows() {
         let repeated = DMatrix::from_row_slice(6, 1, &[0.0, 0.0, 0.0, 0.9, 2.0, 2.1]);
         let massive = DMatrix::from_row_slice(4, 1, &[0.0, 0.9, 2.0, 2.1]);
         let [of_repeated, of_massive] = [two_means(&repeated, &[1.0; 6]), two_means(&massive, &[3.0, 1.0, 1.0, 1.0])];

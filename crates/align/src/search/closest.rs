@@ -103,7 +103,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn is_the_smallest_of_all((one, other) in two_walks(), bound in 0.0..3.0) {
+        fn closest_is_the_smallest_distance((one, other) in two_walks(), bound in 0.0..3.0) {
             let squared = |x: usize, y: usize| {
                 let (x, y) = (one.column(x), other.column(y));
                 x.iter().zip(y.iter()).map(|(x, y)| (x - y) * (x - y)).sum::<f64>()

@@ -218,7 +218,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn rows_give_what_h_and_a_give(
+        fn sparse_group_matches_dense_h_and_a(
             (positions, potentials) in movements(), member in vec(any::<bool>(), 20), raises in vec(-3.0..3.0, 20),
             exponent in -3.0..0.0_f64,
         ) {

@@ -98,7 +98,7 @@ mod tests {
     }
 
     #[test]
-    fn one_array_of_all_is_no_family() {
+    fn unnumbered_arrays_form_no_family() {
         assert_eq!(families(&planes(&["x", "v", "dt"]), &ReadOptions::default()), None);
         assert_eq!(families(&planes(&["x", "x2"]), &ReadOptions::default()), None);
     }

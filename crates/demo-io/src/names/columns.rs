@@ -142,7 +142,7 @@ mod tests {
     }
 
     #[test]
-    fn what_makes_no_sense_is_refused() {
+    fn invalid_column_selections_are_refused() {
         let names = texts(&["x0", "x1", "x2"]);
         for (state, velocity, time, code) in [
             ("x7", "", "", "NoColumn"),

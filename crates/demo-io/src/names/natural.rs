@@ -33,7 +33,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_are_numbers() {
+    fn numbers_in_names_sort_numerically() {
         let mut names = ["demo_10", "demo_2", "demo_1", "demo", "take 3b", "take 03a", "demo_002"];
         names.sort_by(|a, b| compare(a, b));
         assert_eq!(names, ["demo", "demo_1", "demo_002", "demo_2", "demo_10", "take 03a", "take 3b"]);

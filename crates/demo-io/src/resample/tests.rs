@@ -23,7 +23,7 @@ fn recordings(times: Vec<f64>, value: impl Fn(f64) -> f64) -> Recordings {
 }
 
 #[test]
-fn as_by_hand() {
+fn interpolation_matches_hand_computed_values() {
     // Slopes 46/15, 0, 0, 0 and 20/3: the series turns, stands still, and ends steeply.
     let expected = [0.0, 1.0 + 23.0 / 60.0, 2.0, 47.0 / 27.0, 34.0 / 27.0, 1.0, 1.0, 13.0 / 6.0, 5.0];
     let stamps = [0.0, 1.0, 2.5, 3.0, 4.0];
@@ -37,7 +37,7 @@ fn as_by_hand() {
 
 proptest! {
     #[test]
-    fn nothing_is_beyond_its_neighbours_and_samples_are_met(
+    fn interpolation_is_monotone_and_meets_the_samples(
         steps in prop::collection::vec(0.01..1.0f64, 1..30),
         values in prop::collection::vec(-5.0..5.0f64, 31),
         rate in 3.0..200.0f64,

@@ -160,7 +160,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn what_is_written_is_read(
+        fn packed_values_round_trip(
             seconds in any::<i32>(),
             name in "[a-zé]{0,9}",
             numbers in proptest::collection::vec(any::<f64>(), 0..9),
@@ -183,7 +183,7 @@ mod tests {
     }
 
     #[test]
-    fn a_lying_length_allocates_nothing() {
+    fn oversized_lengths_are_refused() {
         let mut reader = Reader::of_message(&[0, 1, 0, 0, 0xf0, 0xff, 0xff, 0xff, 1]).unwrap();
         assert_eq!(reader.texts(), Err(Misfit));
         assert!(Reader::of_message(&[0]).is_err());

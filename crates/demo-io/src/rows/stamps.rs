@@ -217,7 +217,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_stamp_is_refused() {
+    fn invalid_stamps_are_refused() {
         for text in [
             "",
             "soon",

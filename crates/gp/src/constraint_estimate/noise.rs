@@ -40,7 +40,7 @@ mod tests {
     proptest! {
         /// Independent noise counts once in any number of dimensions, smooth noise more.
         #[test]
-        fn only_smooth_errors_are_shared(seed in any::<u64>(), dim in 2usize..24, smooth in any::<bool>()) {
+        fn smooth_noise_counts_more_than_independent_noise(seed in any::<u64>(), dim in 2usize..24, smooth in any::<bool>()) {
             let mut rng = ChaCha8Rng::seed_from_u64(seed);
             let mut drawn = || DMatrix::from_fn(dim, 200, |_, _| rng.sample::<f64, _>(StandardNormal));
             let (noise, slow) = (drawn(), drawn());

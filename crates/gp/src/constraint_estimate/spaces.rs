@@ -49,7 +49,7 @@ mod tests {
 
     /// A single space costs nothing, and without stretches no space does.
     #[test]
-    fn nothing_to_tell() {
+    fn a_single_space_costs_nothing() {
         assert_eq!(rarity(&[vec![3.0], vec![-1.0]], 1), [0.0]);
         assert_eq!(rarity(&[], 3), [0.0; 3]);
     }

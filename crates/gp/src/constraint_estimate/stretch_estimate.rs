@@ -80,7 +80,7 @@ mod tests {
     proptest! {
         /// The rows are orthonormal, span the same space, and have positive largest entries.
         #[test]
-        fn rows_span_the_same(dim in 1usize..7, seed in any::<u64>()) {
+        fn canonical_rows_are_orthonormal_and_span_the_same(dim in 1usize..7, seed in any::<u64>()) {
             let mut rng = ChaCha8Rng::seed_from_u64(seed);
             let rank = rng.random_range(1..=dim);
             let drawn = DMatrix::from_fn(dim, rank, |_, _| 2.0 * rng.random::<f64>() - 1.0).qr().q();
@@ -93,7 +93,7 @@ mod tests {
 
     /// Axes are found whatever the basis of their span.
     #[test]
-    fn axes_are_axes() {
+    fn axes_are_found_in_any_basis() {
         let turned = DMatrix::from_row_slice(3, 2, &[0.6, -0.8, 0.0, 0.0, -0.8, -0.6]);
         let rows = canonical(&turned);
         let axes = DMatrix::from_row_slice(2, 3, &[1.0, 0.0, 0.0, 0.0, 0.0, 1.0]);

@@ -218,7 +218,7 @@ mod tests {
 
         /// Each term computed separately, as in the fit.
         #[test]
-        fn it_is_the_sum_of_its_terms(
+        fn kernel_is_the_sum_of_its_terms(
             terms in terms(), dim in 1_usize..8, squared in prop_oneof![Just(0.0), 0.0..1e-6, 0.0..50.0, 0.0..1e6],
             along in 0.0..1.0,
         ) {

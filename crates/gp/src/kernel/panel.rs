@@ -95,7 +95,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn a_panel_is_its_matrix(rows in 1_usize..40, columns in 1_usize..40, seed in -9.0..9.0_f64) {
+        fn panels_round_trip_their_matrix(rows in 1_usize..40, columns in 1_usize..40, seed in -9.0..9.0_f64) {
             let matrix = DMatrix::from_fn(rows, columns, |i, j| (seed + (i * 41 + j) as f64).sin());
             let mut panel = Panel::of(&matrix);
             let norms: Vec<f64> = matrix.column_iter().map(|column| column.norm_squared()).collect();

@@ -53,7 +53,7 @@ mod tests {
         /// Policy errors `factor` times as large as the posterior predicts are found, whatever the noise is and whatever the model assumes
         /// for it.
         #[test]
-        fn the_policys_part_of_errors_is_found(
+        fn shared_policy_errors_are_estimated(
             factor in 0.01f64..10.0,
             own in 0.0f64..4.0,
             believed in 0.0f64..4.0,

@@ -90,7 +90,7 @@ mod tests {
     }
 
     #[test]
-    fn rotation_is_seen_by_t_or_where_it_alone_predicts() {
+    fn rotation_needs_a_significant_t_or_sole_prediction() {
         assert!(taken(2.6, [0.5, 0.6], ALIKE) && !taken(2.4, [0.5, 0.6], ALIKE));
         // A gain concentrated in one movement has a small t, but no other model predicts.
         assert!(taken(0.5, [-5.8, 1.0 - 4e-9], ALIKE));

@@ -45,7 +45,7 @@ mod tests {
     proptest! {
         /// For two values: compares with the sum over the number of the thirty that are the larger one.
         #[test]
-        fn of_two_values_it_is_the_binomial_sum(share in 0.001f64..0.999, ratio in 0.0f64..9.0, scale in -9.0f64..9.0) {
+        fn typical_mean_of_two_values_is_the_binomial_sum(share in 0.001f64..0.999, ratio in 0.0f64..9.0, scale in -9.0f64..9.0) {
             let (few, many) = (10f64.powf(scale + ratio), 10f64.powf(scale));
             let mean = |k: usize| (k as f64 * few + (f64::from(MOVEMENTS) - k as f64) * many) / f64::from(MOVEMENTS);
             let expected: f64 = binomial(share).enumerate().map(|(k, p)| p * mean(k).ln()).sum();
@@ -55,7 +55,7 @@ mod tests {
 
         /// The result scales with the values, equals them if they are equal, and is at most their mean.
         #[test]
-        fn it_is_a_mean(values in prop::collection::vec(1e-6f64..1.0, 1..60), scale in -9.0f64..9.0, equal in 1e-9f64..1e9) {
+        fn typical_mean_scales_and_is_bounded(values in prop::collection::vec(1e-6f64..1.0, 1..60), scale in -9.0f64..9.0, equal in 1e-9f64..1e9) {
             let ones = vec![1.0; values.len()];
             let factor = 10f64.powf(scale);
             let scaled: Vec<f64> = values.iter().map(|value| factor * value).collect();
@@ -70,7 +70,7 @@ mod tests {
     }
 
     #[test]
-    fn of_zeros_it_is_zero() {
+    fn typical_mean_of_zeros_is_zero() {
         assert_eq!(typical_mean(&[0.0, 0.0], &[1.0, 2.0]), 0.0);
     }
 }

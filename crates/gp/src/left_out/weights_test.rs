@@ -45,7 +45,7 @@ mod tests {
         /// The units of weights and speed do not matter, exchanging the models changes the sign, and equal models are
         /// equally good.
         #[test]
-        fn only_ratios_count(
+        fn t_is_invariant_to_units_and_antisymmetric(
             errors in prop::collection::vec((-1.0..1.0f64, -1.0..1.0f64, 0.1..2.0f64, 1e-3..9.0f64), 12),
             (unit, speed) in (0.01..100.0f64, 0.01..100.0f64),
         ) {

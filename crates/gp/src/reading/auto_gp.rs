@@ -268,7 +268,7 @@ mod tests {
         /// The estimate always allows for the distance to the other policy, never exceeds the error of knowing only the mean, and is
         /// bounded by both policies only if nothing is hidden.
         #[test]
-        fn what_is_expected_lies_between_the_gap_and_knowing_nothing(
+        fn expected_error_stays_within_its_bounds(
             gap in 0.0f64..2.0,
             p_d in -0.5f64..1.5,
             away in 0.0f64..2.0,
@@ -294,7 +294,7 @@ mod tests {
 
     /// A constant direct policy measures nothing.
     #[test]
-    fn where_nothing_varies_nothing_is_known() {
+    fn a_constant_direct_policy_determines_nothing() {
         for away in [f64::NAN, f64::INFINITY] {
             assert_eq!(expected_beside((Hypothesis::Free, 0.5, 0.1), away, 0.2), 1.0);
         }

@@ -178,7 +178,7 @@ mod tests {
         /// Constant velocity: each trajectory becomes the powers of two that make up its length, with the mean state and velocity
         /// and the corresponding variance. No mean spans two trajectories. Units do not matter.
         #[test]
-        fn what_stays_is_one_row(
+        fn constant_velocities_are_averaged_by_powers_of_two(
             lengths in prop::collection::vec(1usize..70, 1..6),
             dim in 1usize..5,
             (noise, unit) in (0.01..1.0f64, 0.1..100.0f64),

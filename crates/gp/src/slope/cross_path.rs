@@ -84,7 +84,7 @@ mod tests {
 
         /// Movements that all go the same way, up to a tenth of noise, test nothing across; movements in random directions do.
         #[test]
-        fn movements_in_other_directions_test_across(dim in 2usize..7, seed in any::<u64>()) {
+        fn random_directions_test_across_the_paths(dim in 2usize..7, seed in any::<u64>()) {
             let rng = &mut ChaCha8Rng::seed_from_u64(seed);
             let mut random = |size: f64| DVector::from_fn(dim, |_, _| rng.random_range(-size..size));
             let alike = beside(dim, || DVector::from_fn(dim, |k, _| if k == 0 { 1.0 } else { 0.0 }) + random(0.1));
@@ -96,7 +96,7 @@ mod tests {
 
     /// A few straight movements to one goal do not pass the same places, although their directions differ.
     #[test]
-    fn few_rays_test_nothing_across() {
+    fn few_rays_leave_the_cross_paths_untested() {
         for (dim, movements) in [(2, 3), (2, 5), (3, 5), (6, 5), (6, 20)] {
             let rng = &mut ChaCha8Rng::seed_from_u64(7);
             let samples = 30;
@@ -114,7 +114,7 @@ mod tests {
 
     /// One dimension has no direction across.
     #[test]
-    fn one_dimension_has_no_across() {
+    fn one_dimension_leaves_the_cross_paths_untested() {
         let mut sign = 1.0;
         let data = beside(1, || {
             sign = -sign;

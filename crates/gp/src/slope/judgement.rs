@@ -193,7 +193,7 @@ mod tests {
         /// Errors larger than predicted always widen the posterior. Smaller errors narrow it only in tested directions, and never below
         /// either measure or the share of noise.
         #[test]
-        fn a_posterior_is_narrowed_only_by_what_tested_it(z_squared in 0.0f64..9.0, common in 0.0f64..9.0, noise in 0.0f64..1.0) {
+        fn only_tested_directions_narrow_the_posterior(z_squared in 0.0f64..9.0, common in 0.0f64..9.0, noise in 0.0f64..1.0) {
             let tested = calibration((z_squared, common), noise, CrossPathEvidence::Tested);
             let untested = calibration((z_squared, common), noise, CrossPathEvidence::Untested);
             prop_assert_eq!(untested, z_squared.max(common).max(1.0));

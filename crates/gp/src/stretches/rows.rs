@@ -250,7 +250,7 @@ mod tests {
     proptest! {
         /// (S24): if nothing pushes, one stretch, however pushed it seems, does not decide; a tenth of all stretches do.
         #[test]
-        fn one_stretch_does_not_tell_a_push(
+        fn one_stretch_is_no_significant_push(
             normals in 1usize..3,
             count in 20usize..100,
             noise in 0.0f64..1.9,
@@ -269,7 +269,7 @@ mod tests {
 
         /// The result has about the requested number of rows and contains the previous ones unchanged; `None` beyond all.
         #[test]
-        fn more_rows_hold_the_fewer(seed in any::<u64>(), few in 20usize..60, most in 60usize..400) {
+        fn larger_selections_contain_the_smaller(seed in any::<u64>(), few in 20usize..60, most in 60usize..400) {
             let system = CyclesWithTask { n_trajectories: 6, ..CyclesWithTask::default() };
             let shown = demonstrations(&system.record(&mut ChaCha8Rng::seed_from_u64(seed)).unwrap()).unwrap();
             let rows = FrontEnd::Velocities.rows(&shown).unwrap();

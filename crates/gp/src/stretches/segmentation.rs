@@ -183,7 +183,7 @@ mod tests {
 
         /// Velocities in all directions have no segment, whatever lower noise is assumed.
         #[test]
-        fn free_movement_has_none(dim in 2usize..5, count in 20usize..50, seed in any::<u64>()) {
+        fn free_movements_have_no_segments(dim in 2usize..5, count in 20usize..50, seed in any::<u64>()) {
             let mut rng = ChaCha8Rng::seed_from_u64(seed);
             let velocities = DMatrix::from_fn(dim, count, |_, _| 2.0 * rng.random::<f64>() - 1.0);
             prop_assert_eq!(segments(&velocities, 1e-8), []);

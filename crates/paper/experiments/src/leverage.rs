@@ -109,7 +109,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_written_is_read() {
+    fn committed_leverage_round_trips() {
         let committed = Leverage::committed().unwrap();
         assert_eq!(committed.json().unwrap(), COMMITTED);
     }

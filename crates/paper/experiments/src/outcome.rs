@@ -67,7 +67,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_summed_up_is_a_failure() {
+    fn invalid_outcomes_are_failures() {
         let row = |value: f64| BTreeMap::from([(Measure::Nupe, value)]);
         assert_eq!(Outcome::of(Ok(vec![row(0.5)]), 1), Outcome::Measured(vec![row(0.5)]));
         for (rows, n_rows, why) in [

@@ -196,7 +196,7 @@ mod tests {
 
     /// Names from a file are inserted into Markdown, a page and the hint of a command.
     #[test]
-    fn hostile_names_are_damage() {
+    fn hostile_row_names_are_refused() {
         let file = |row: &str| {
             let results = serde_json::json!({
                 "schema": SCHEMA, "seed": 1, "quick": false,

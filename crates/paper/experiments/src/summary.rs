@@ -87,7 +87,7 @@ mod tests {
     use crate::verdict::Verdict;
 
     #[test]
-    fn a_cell_that_is_not_of_its_values_is_found() {
+    fn cells_inconsistent_with_their_values_are_found() {
         let experiments = registry().unwrap();
         let text = include_str!("../../../../docs/records/seed-2/results.json");
         let mut committed = Results::read("results.json", text).unwrap();

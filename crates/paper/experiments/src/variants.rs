@@ -171,7 +171,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_stand_where_something_is_quoted() {
+    fn quotes_are_replaced_by_their_numbers() {
         let own = cell("wide", Measure::Nupe);
         let mut variants = Variants::from_seed(1);
         for (written, value) in [("passes = 1", 0.0314), ("passes = 2", 4.0)] {
@@ -184,7 +184,7 @@ mod tests {
     }
 
     #[test]
-    fn everything_quoted_is_committed() {
+    fn no_quote_is_left_unfilled() {
         for experiment in registry().unwrap() {
             let texts = experiment.explanations.texts.values().flat_map(BTreeMap::values);
             for text in texts {

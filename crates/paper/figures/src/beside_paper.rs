@@ -47,7 +47,7 @@ fn assert_says_from_to(sources: &Sources, id: &str, [from, to]: [&str; 2], error
 }
 
 #[test]
-fn captions_are_of_every_run_and_comparisons_of_one() {
+fn captions_hold_for_every_run_and_comparisons_for_one() {
     for Figure { id, caption, beside_paper, needs, .. } in figures() {
         assert!(!caption.contains("paper") && !caption.contains("seed"), "{id}: {caption}");
         let of_results = needs.iter().any(|need| experiments::registry().unwrap().iter().any(|e| e.id == *need));
@@ -63,7 +63,7 @@ fn order(sources: &Sources, experiment: &str, row: &str) -> (bool, bool) {
 }
 
 #[test]
-fn figure_6_left_is_as_said() {
+fn figure_6_left_text_matches_the_records() {
     let (sources, id) = (records(), "figure6_left");
     assert_says_from_to(&sources, id, ["narrow-20", "narrow-100"], &ERRORS);
     let median = two_digits(cell(&sources, id, "narrow-20", PotentialNmse).median);
@@ -77,7 +77,7 @@ fn figure_6_left_is_as_said() {
 }
 
 #[test]
-fn figure_6_right_is_as_said() {
+fn figure_6_right_text_matches_the_records() {
     let (sources, id) = (records(), "figure6_right");
     assert_says_from_to(&sources, id, ["velocity-narrow-2.5", "velocity-narrow-20"], &ERRORS);
     assert_says(id, "with π on top and φ lowest throughout");
@@ -96,7 +96,7 @@ fn figure_6_right_is_as_said() {
 }
 
 #[test]
-fn figure_9_is_as_said() {
+fn figure_9_text_matches_the_records() {
     let (sources, id) = (records(), "figure9");
     assert_says_from_to(&sources, id, ["d-0.1", "d-1.0"], &ERRORS);
     assert_says_from_to(&sources, id, ["r-0.1", "r-1.0"], &[ERRORS[0], ERRORS[2]]);
@@ -127,7 +127,7 @@ fn other_readings_of_tables_are_quoted_as_they_are() {
 
 /// Numbers that explanations of cells call printed are printed in the paper.
 #[test]
-fn what_is_called_printed_is() {
+fn numbers_called_printed_are_in_the_paper() {
     let number = |word: &str| {
         let word = word.trim_matches(|c: char| !c.is_ascii_digit());
         let last_place = 0.1_f64.powf(word.split_once('.').map_or(0.0, |(_, decimals)| decimals.len() as f64));
@@ -156,7 +156,7 @@ fn what_is_called_printed_is() {
 /// Checks the statements about plain Euler steps of the grasp's potential, and about the way of the hands in the paper's
 /// two seconds.
 #[test]
-fn the_grasp_s_rates_are_as_said() {
+fn grasp_rates_match_the_text() {
     let grasp = experiments::grasp().unwrap();
     let rate = 2.0 * grasp.scene.potential().weight;
     let way = 100.0 * (1.0 - (-2.0 * rate).exp());

@@ -192,7 +192,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_error_is_none_of_the_truth_and_one_of_its_mean() {
+    fn error_is_zero_for_the_truth_and_one_for_its_mean() {
         let truth: Vec<Arrow> = (0..9).map(|i| (0.0, 0.0, f64::from(i % 3), f64::from(i / 3))).collect();
         assert!(error(&truth, &truth).unwrap() == 0.0);
         let mean: Vec<Arrow> = truth.iter().map(|_| (0.0, 0.0, 1.0, 1.0)).collect();

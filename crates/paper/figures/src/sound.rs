@@ -136,7 +136,7 @@ mod tests {
     }
 
     #[test]
-    fn lists_that_have_lost_everything_are_refused_or_drawn_without() {
+    fn emptied_lists_are_refused_or_left_out() {
         let mut sources = records();
         for id in sources.documents.keys().cloned().collect::<Vec<_>>() {
             let mut all = std::collections::BTreeMap::new();

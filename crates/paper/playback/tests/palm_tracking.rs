@@ -98,7 +98,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
     #[test]
-    fn demonstrations_keep_limits_and_stride_and_tell_their_errors(seed in any::<u64>(), tracking in any_tracking()) {
+    fn demonstrations_keep_limits_and_report_errors(seed in any::<u64>(), tracking in any_tracking()) {
         let grasp = Grasp::new(upper_body());
         let start = grasp.start(&mut ChaCha8Rng::seed_from_u64(seed)).unwrap();
         let recording = grasp.movement(&start).unwrap();
@@ -110,7 +110,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(96))]
 
     #[test]
-    fn so_does_every_movement_from_every_posture(seed in any::<u64>(), tracking in any_tracking()) {
+    fn random_movements_keep_limits_and_report_errors(seed in any::<u64>(), tracking in any_tracking()) {
         let body = upper_body();
         let (posture, palms) = anything(&body, &mut ChaCha8Rng::seed_from_u64(seed));
         assert_keeps_its_word(&body, tracking, &posture, &palms);
@@ -188,7 +188,7 @@ fn left_palm_to(body: &UpperBody, goal: Vector3<f64>) -> Trajectory {
 
 /// An arm stretched towards a target out of reach comes as near as with many more corrections, and rests.
 #[test]
-fn what_is_out_of_reach_is_pointed_at() {
+fn arms_point_at_unreachable_targets() {
     let body = upper_body();
     for goal in [[0.95, 0.1, 0.9], [0.4, 1.2, 0.9], [0.2, 0.4, 2.2], [3.0, 0.0, 0.0]].map(Vector3::from) {
         let palms = left_palm_to(&body, goal);

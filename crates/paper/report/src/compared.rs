@@ -180,7 +180,7 @@ mod tests {
 
     /// The report explains every printed number of the records that is missed or differs significantly.
     #[test]
-    fn what_stands_out_is_explained() {
+    fn outlying_cells_are_explained() {
         let experiments = registry().unwrap();
         for text in [
             include_str!("../../../../docs/records/seed-1/results.json"),

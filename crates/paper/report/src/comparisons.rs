@@ -192,7 +192,7 @@ mod tests {
     /// PolicyAlign has more data sets than the others: only the first ones count. A set that is missing for one learner still
     /// counts for the others.
     #[test]
-    fn means_are_over_the_data_sets_that_all_have() {
+    fn means_use_only_common_data_sets() {
         let experiments = registry().unwrap();
         let table1 = experiments.iter().find(|experiment| experiment.id == "table1").unwrap();
         let case = "parabola-40x40-narrow";
@@ -212,7 +212,7 @@ mod tests {
     }
 
     #[test]
-    fn where_the_slope_gp_was_not_run_there_is_no_table() {
+    fn no_table_is_made_without_the_slope_gp() {
         let experiments = registry().unwrap();
         let table1 = experiments.iter().find(|experiment| experiment.id == "table1").unwrap();
         let rows = vec![row("parabola-40x40-narrow", &[Some(0.1)])];
@@ -227,7 +227,7 @@ mod tests {
     }
 
     #[test]
-    fn ratios_show_what_they_can() {
+    fn ratios_are_shown_with_suitable_precision() {
         assert_eq!([2.5, 0.004, 3e-21].map(shown_ratio), ["2.50", "4e-3", "< 1e-9"]);
     }
 }

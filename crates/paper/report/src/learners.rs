@@ -307,7 +307,7 @@ mod tests {
     }
 
     #[test]
-    fn wins_are_counted_for_those_who_have_any() {
+    fn only_winning_learners_are_listed() {
         let experiments = experiments::registry().unwrap();
         let (nupe, fresh) = (Measure::Nupe, Measure::NupeFresh);
         let (narrow, medium) = ("parabola-40x40-narrow", "parabola-40x40-medium");
@@ -329,7 +329,7 @@ mod tests {
     }
 
     #[test]
-    fn errors_on_new_movements_are_of_the_same_data_sets_and_only_what_was_measured() {
+    fn errors_on_new_movements_need_all_learners() {
         let experiments = experiments::registry().unwrap();
         let fresh = Measure::NupeFresh;
         let case = "sinusoidal-100x100-medium";

@@ -97,7 +97,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn names_have_their_meaning() {
+    fn terms_and_measures_have_meanings() {
         assert!(term("narrow").is_some_and(|meaning| meaning.contains("bandwidth")));
         assert_eq!(term("40x40"), term("100x100"));
         assert_eq!([term("parabola"), term("40x40, 100x100"), term("")], [None; 3]);

@@ -184,7 +184,7 @@ mod tests {
     }
 
     #[test]
-    fn in_short_a_cell_is_ours_the_papers_and_what_sets_them_apart() {
+    fn short_cells_show_both_values_and_the_verdict() {
         let experiments = registry().unwrap();
         let paper = experiments.iter().find(|experiment| experiment.id == "table1").unwrap();
         let id = "parabola-40x40-narrow";
@@ -207,7 +207,7 @@ mod tests {
     }
 
     #[test]
-    fn what_the_paper_shows_as_curves_has_no_columns_for_printed_figures() {
+    fn curve_sections_omit_columns_of_printed_numbers() {
         let experiments = registry().unwrap();
         let curves = experiments.iter().find(|experiment| experiment.paper.is_empty()).unwrap();
         let cell = Cell {

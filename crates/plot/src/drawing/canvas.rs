@@ -110,7 +110,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_arrow_ends_at_its_tip_and_none_is_drawn_where_there_is_no_way() {
+    fn arrows_end_at_their_tip_and_tiny_ones_are_omitted() {
         let arrow = arrow((10.0, 20.0), (40.0, 20.0), "#000000", 2.0);
         let [Primitive::Line { x1, x2, .. }, Primitive::Path(head)] = &arrow[..] else { panic!("{arrow:?}") };
         assert!((x1 - 10.0).abs() < 1e-12 && (x2 - 31.5).abs() < 1e-12, "{arrow:?}");

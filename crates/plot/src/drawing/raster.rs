@@ -101,13 +101,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn bytes_are_written_as_in_the_rfc() {
+    fn base64_matches_the_rfc() {
         let texts = ["", "f", "fo", "foo", "foob", "fooba", "foobar"].map(|text| base64(text.as_bytes()));
         assert_eq!(texts, ["", "Zg==", "Zm8=", "Zm9v", "Zm9vYg==", "Zm9vYmE=", "Zm9vYmFy"]);
     }
 
     #[test]
-    fn areas_are_runs_of_one_colour_and_nothing_where_nothing_is() {
+    fn areas_are_runs_of_one_visible_colour() {
         let (red, none) = ([255, 0, 0, 255], [0; 4]);
         let raster = Raster { corner: (3.0, 4.0), side: 0.5, width: 3, dots: vec![red, red, none, none, none, red] };
         let areas: Vec<_> = raster

@@ -74,7 +74,7 @@ mod tests {
     }
 
     #[test]
-    fn a_level_field_has_the_colour_in_the_middle_and_unknown_places_none() {
+    fn level_fields_have_the_middle_colour_and_unknown_none() {
         let of = |value| Field::new(vec![0.0, 1.0], vec![0.0, 1.0], vec![vec![value; 2]; 2]).unwrap();
         let [r, g, b] = height(0.5);
         assert!(dots(&of(3.0), [3.0, 3.0]).iter().all(|dot| *dot == [r, g, b, 255]));

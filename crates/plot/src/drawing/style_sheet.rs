@@ -113,7 +113,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_recurs_is_said_once_and_the_rest_stays() {
+    fn repeated_styles_are_written_once() {
         let dots = "<circle cx=\"8\" r=\"2\" fill=\"#0072b2\" stroke=\"none\" />".repeat(9);
         let rest = "<text fill=\"red\" x=\"1\">a > b</text><g class=\"k\" fill=\"#0072b2\" stroke=\"none\"></g>";
         let svg = format!("<svg width=\"9\">{dots}{rest}</svg>");
@@ -126,7 +126,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_rare_or_no_drawing_is_left_alone() {
+    fn rare_styles_and_other_texts_are_unchanged() {
         for text in ["", "words", "<svg><path d=\"M0 0\" fill=\"red\"/></svg>", "<svg a='b' fill=\"x\"", "<!-- \" -->"]
         {
             assert_eq!(with_style_sheet(text), text);

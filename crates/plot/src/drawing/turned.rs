@@ -64,7 +64,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn words_that_go_up_have_the_dots_of_level_ones() {
+    fn vertical_text_has_the_dots_of_horizontal_text() {
         let words = |rotate| Primitive::Text {
             x: 100.0,
             y: 80.0,

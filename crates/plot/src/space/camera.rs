@@ -43,14 +43,14 @@ mod tests {
         }
 
         #[test]
-        fn what_is_higher_is_never_drawn_lower(azimuth in -400.0..400.0, elevation in -90.0..=90.0) {
+        fn higher_points_are_never_drawn_lower(azimuth in -400.0..400.0, elevation in -90.0..=90.0) {
             let seen = Camera { azimuth, elevation }.axes() * Vector3::z();
             prop_assert!(seen.x.abs() < 1e-15 && seen.y > -1e-15);
         }
     }
 
     #[test]
-    fn named_views_are_as_said() {
+    fn named_views_have_the_expected_axes() {
         let seen = |azimuth, elevation, point: Vector3<f64>| Camera { azimuth, elevation }.axes() * point;
         let near = |a: Vector3<f64>, b: Vector3<f64>| (a - b).norm() < 1e-15;
         let Camera { azimuth, elevation } = Camera::BEHIND;

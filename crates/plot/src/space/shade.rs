@@ -67,7 +67,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn words_differ_from_what_is_behind_them() {
+    fn text_contrasts_with_its_background() {
         let behind = ["#000000", "#0072b2", "#cc79a7", "#f0e442", "#ffffff"];
         assert_eq!(behind.map(word_on), ["#ffffff", "#ffffff", "#000000", "#000000", "#000000"]);
     }

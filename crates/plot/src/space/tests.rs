@@ -167,7 +167,7 @@ proptest! {
     }
 
     #[test]
-    fn of_two_balls_the_nearer_is_seen(camera in camera(), apart in 0.1..3.0, radius in 0.2..1.0) {
+    fn the_nearer_of_two_balls_is_visible(camera in camera(), apart in 0.1..3.0, radius in 0.2..1.0) {
         let axes = camera.axes();
         let towards = axes.row(2).transpose() * apart;
         let paint = |color| Paint::opaque(color);

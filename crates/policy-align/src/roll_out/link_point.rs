@@ -94,7 +94,7 @@ mod tests {
     }
 
     #[test]
-    fn many_states_are_each_of_them() {
+    fn batch_results_equal_single_ones() {
         let (point, states) = tool();
         let places = point.places(&states).expect("all states are finite");
         let jacobians = point.jacobians(&states).expect("all states are finite");

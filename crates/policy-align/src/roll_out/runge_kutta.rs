@@ -125,7 +125,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_finite_ends_it_where_it_is() {
+    fn integration_stops_at_non_finite_velocities() {
         let field = |x: &DVector<f64>, _: f64| Ok::<_, Infallible>(dvector![if x[0] < 0.5 { 1.0 } else { f64::NAN }]);
         let follow = |start: f64| RungeKutta::new(dvector![1e-4], 2.0, 10_000).follow(field, dvector![start], 2.0);
         let Err(Unfollowed::NotFinite { state, elapsed }) = follow(0.0) else { panic!("it stops at the edge") };

@@ -72,7 +72,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn order_and_space_do_not_count_and_all_else_does() {
+    fn checksum_ignores_only_order_and_whitespace() {
         let of = |text: &str| checksum(&serde_json::from_str(text).unwrap());
         let one = of(r#"{"a": [1.5, null], "b": "é"}"#);
         assert_eq!(one, of("{\"b\":\"\\u00e9\",\n\"a\":[1.5,null]}"));

@@ -58,7 +58,7 @@ mod tests {
         /// Friction is found by its size, whatever the error of the policy's size. Noise that slows as often as it accelerates is not
         /// friction.
         #[test]
-        fn friction_is_what_is_missing(gain in 0.8..1.2f64, friction in 0.05..0.4f64, seed in 0..1000u32) {
+        fn friction_is_estimated_from_missing_speed(gain in 0.8..1.2f64, friction in 0.05..0.4f64, seed in 0..1000u32) {
             let rows = super::tests::rows(gain, seed, |i| friction * (1.0 + 0.1 * (5.3 * i as f64).sin()));
             let (missing, t) = missing_speed(&along_movements(&Bowl, &rows), rows.len()).unwrap();
             let usual = (rows.velocities().norm_squared() / rows.len() as f64).sqrt();

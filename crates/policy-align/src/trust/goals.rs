@@ -106,7 +106,7 @@ mod tests {
     proptest! {
         /// If π̂ = 0, a separate velocity of each movement explains everything; one that changes from sample to sample explains nothing.
         #[test]
-        fn what_each_movement_has_of_its_own(seed in 0..1000u32, size in 0.1..10.0f64) {
+        fn separate_velocities_per_movement_are_detected(seed in 0..1000u32, size in 0.1..10.0f64) {
             let rows = |every: usize| {
                 let at = |axis: usize, i: usize| size * (f64::from(seed) + 1.3 * (i / every) as f64 + 1.6 * axis as f64).sin();
                 let indices = (0..240).map(|i| SampleIndex { trajectory: i / 20, sample: i % 20 }).collect();

@@ -73,7 +73,7 @@ mod tests {
         /// Movements that accelerate from rest lack the expected share at the beginning. Those at a constant share of the speed, with
         /// noise, lack nothing.
         #[test]
-        fn what_a_beginning_lacks_is_found(
+        fn slow_starts_are_found(
             starts in prop::collection::vec(prop::array::uniform2(0.5..2.0f64), 5..12), ramp in 0.0..1.0f64, share in 0.5..1.5f64,
         ) {
             let (mut states, mut velocities, mut indices) = (vec![], vec![], vec![]);

@@ -94,7 +94,7 @@ mod tests {
         /// Speeds that fall or grow with time are found and named, even if the policy has absorbed their mean. Differences between
         /// movements are found from 5 % of the squares; noise is not.
         #[test]
-        fn what_the_state_does_not_explain(seed in 0..1000u32, by in 0.3..0.9f64, growing: bool, little in 0.001..0.1f64) {
+        fn time_and_movement_dependence_is_found(seed in 0..1000u32, by in 0.3..0.9f64, growing: bool, little in 0.001..0.1f64) {
             let sign = if growing { 1.0 } else { -1.0 };
             let found = unexplained(movements(seed, |_, time| 1.0 + sign * by * (time - 0.4)), growing).unwrap();
             let word = if growing { "grows" } else { "falls" };

@@ -138,7 +138,7 @@ mod tests {
     }
 
     #[test]
-    fn names_are_put_together() {
+    fn numbered_names_are_abbreviated() {
         assert_eq!(listed(&["x0", "x1", "x2", "x4", "a", "s_9", "s_10"]), "x0-2,x4,a,s_9-10");
         assert_eq!(listed(&["x07", "x08", "7", "8"]), "x07,x08,7,8");
         assert_eq!(listed(&[]), "");
@@ -220,7 +220,7 @@ mod tests {
     /// Channels that only resemble velocities or time: one rotating pair, a clock with a name, one that starts anywhere, a belt at constant
     /// speed.
     #[test]
-    fn states_are_left_alone() {
+    fn states_resembling_velocities_or_time_are_kept() {
         let turning = movements(6, 0.05, |k, t| vec![(t + k as f64).sin(), (t + k as f64).cos()]);
         assert_eq!(no_state(&turning, &channels(&["x0", "x1"])), None);
         let rising = |start: f64| movements(6, 0.05, move |k, t| vec![(t * k as f64).sin(), t + start * k as f64]);

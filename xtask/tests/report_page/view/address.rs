@@ -15,7 +15,7 @@ fn kept(page: &mut Page) -> Value {
 }
 
 #[test]
-fn what_was_shown_is_shown_again() {
+fn addresses_restore_the_view() {
     let Some(mut page) = page() else { return };
     view::<()>(&mut page, "select({ learner: 'naive', constraint: 'gap', start: 1 })");
     view::<()>(&mut page, "seek(33)");
@@ -40,7 +40,7 @@ fn what_was_shown_is_shown_again() {
 }
 
 #[test]
-fn what_an_address_tells_wrongly_is_left() {
+fn invalid_address_values_are_ignored() {
     let Some(mut page) = page() else { return };
     let before = kept(&mut page);
     page.evaluate::<()>(

@@ -37,7 +37,7 @@ fn right_button_and_shift_move_the_picture_with_the_mouse() {
 }
 
 #[test]
-fn the_wheel_keeps_what_is_under_the_mouse() {
+fn wheel_zooms_about_the_mouse() {
     // With fewer pixels some turns of the wheel get lost.
     let Some(mut page) = opened_on(1.0).map(at_rest) else { return };
     page.prefer("prefers-reduced-motion", "reduce");
@@ -56,7 +56,7 @@ fn the_wheel_keeps_what_is_under_the_mouse() {
 }
 
 #[test]
-fn a_double_click_looks_at_what_is_there() {
+fn double_clicks_centre_their_target() {
     let Some(mut page) = page() else { return };
     page.prefer("prefers-reduced-motion", "reduce");
     view::<()>(&mut page, "look('side')");

@@ -3,7 +3,7 @@
 use super::{CANVAS, assert_another, page, picture, state, view};
 
 #[test]
-fn it_plays_and_stands_still() {
+fn playback_starts_pauses_and_stays_in_range() {
     let Some(mut page) = page() else { return };
     let last = state(&mut page, "sample");
     let mut before = picture(&mut page);
@@ -53,7 +53,7 @@ fn mouse_wheel_and_keys_move_the_camera() {
 }
 
 #[test]
-fn it_goes_on_and_back_by_a_step() {
+fn keys_and_buttons_step_by_one_sample() {
     let Some(mut page) = page() else { return };
     let (x, y) = page.middle_of(CANVAS);
     page.click((x, y));
@@ -77,7 +77,7 @@ fn it_goes_on_and_back_by_a_step() {
 }
 
 #[test]
-fn it_fills_the_screen_and_goes_back() {
+fn full_screen_can_be_entered_and_left() {
     let Some(mut page) = page() else { return };
     let height = "document.querySelector('#view canvas').clientHeight";
     let before: f64 = page.evaluate(height);

@@ -5,7 +5,7 @@ use serde_json::Value;
 use super::{assert_another, page, picture, view};
 
 #[test]
-fn something_is_drawn() {
+fn view_is_not_blank() {
     let Some(mut page) = page() else { return };
     let count = "(() => {
         policyAlignView.render();
@@ -19,7 +19,7 @@ fn something_is_drawn() {
 }
 
 #[test]
-fn every_choice_is_another_picture() {
+fn every_choice_changes_the_picture() {
     let Some(mut page) = page() else { return };
     view::<()>(&mut page, "seek(12)");
     let first = picture(&mut page);
@@ -44,7 +44,7 @@ fn every_choice_is_another_picture() {
 }
 
 #[test]
-fn what_is_not_there_cannot_be_chosen() {
+fn unknown_choices_are_refused() {
     let Some(mut page) = page() else { return };
     for choice in ["{ learner: 'teacher' }", "{ constraint: 'fog' }", "{ start: 99 }", "{ speed: 3 }"] {
         let attempt =

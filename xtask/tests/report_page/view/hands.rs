@@ -36,7 +36,7 @@ fn hands_are_where_forward_kinematics_has_them() {
 }
 
 #[test]
-fn no_hand_goes_through_table_or_plates_and_through_the_ball_only_where_it_is_said() {
+fn hands_pass_only_through_a_reported_ball() {
     let Some(mut page) = page() else { return };
     let faults: Vec<String> = page.evaluate(FAULTS);
     assert_eq!(faults, Vec::<String>::new());

@@ -21,7 +21,7 @@ fn dark_light_and_paper_have_their_colours() {
 }
 
 #[test]
-fn a_phone_shows_it_whole() {
+fn view_fits_a_phone() {
     let Some(mut page) = page() else { return };
     let mut before = picture(&mut page);
     page.resize(390, 844);

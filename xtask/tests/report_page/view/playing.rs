@@ -3,7 +3,7 @@
 use super::{CANVAS, opened, page, state, view};
 
 #[test]
-fn it_plays_once_when_it_is_seen() {
+fn view_plays_once_when_it_becomes_visible() {
     let Some(mut page) = opened() else { return };
     assert!(!view::<bool>(&mut page, "state().playing"), "it plays unseen");
     page.middle_of(CANVAS);
@@ -20,7 +20,7 @@ fn it_plays_once_when_it_is_seen() {
 }
 
 #[test]
-fn who_wants_rest_gets_it() {
+fn reduced_motion_prevents_autoplay() {
     let Some(mut page) = opened() else { return };
     page.prefer("prefers-reduced-motion", "reduce");
     page.middle_of(CANVAS);
@@ -29,7 +29,7 @@ fn who_wants_rest_gets_it() {
 }
 
 #[test]
-fn again_and_again_begins_anew_at_the_end() {
+fn looping_restarts_at_the_end() {
     let Some(mut page) = page() else { return };
     let last = state(&mut page, "sample");
     view::<()>(&mut page, "select({ loop: true })");
@@ -41,7 +41,7 @@ fn again_and_again_begins_anew_at_the_end() {
 }
 
 #[test]
-fn the_line_across_the_curves_is_where_the_slider_is() {
+fn the_cursor_of_the_curves_follows_the_slider() {
     let Some(mut page) = page() else { return };
     for sample in [0, 25, 99] {
         view::<()>(&mut page, &format!("seek({sample})"));

@@ -39,7 +39,7 @@ fn words_are_written_only_when_they_change() {
 }
 
 #[test]
-fn what_holds_the_expert_is_said() {
+fn hands_held_by_the_obstacle_are_named() {
     let Some(mut page) = page() else { return };
     let mut said = |learner: &str, start: usize| -> String {
         view::<()>(&mut page, &format!("select({{ learner: '{learner}', constraint: 'obstacle', start: {start} }})"));
@@ -56,7 +56,7 @@ fn what_holds_the_expert_is_said() {
 }
 
 #[test]
-fn the_closest_is_named_beside_the_end() {
+fn closest_and_final_distances_are_shown() {
     let Some(mut page) = page() else { return };
     view::<()>(&mut page, "select({ learner: 'policy_align', constraint: 'gap', start: 0 })");
     view::<()>(&mut page, "render()");
@@ -71,7 +71,7 @@ fn the_closest_is_named_beside_the_end() {
 }
 
 #[test]
-fn what_the_policy_wants_is_named_where_the_robot_misses_it() {
+fn missed_policy_targets_are_mentioned() {
     let Some(mut page) = page() else { return };
     let words = "document.querySelector('.view-words').textContent";
     for constraint in ["gap", "obstacle", "none"] {

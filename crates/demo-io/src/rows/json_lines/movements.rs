@@ -146,7 +146,7 @@ mod tests {
     }
 
     #[test]
-    fn forms_are_told_apart() {
+    fn json_forms_are_distinguished() {
         for (text, alone, form) in [
             (r#"{"state": [[1], [2]]}"#, false, Form::Episode),
             (r#"{"t": [0, 1], "pos": [[1, 2], [3, 4]]}"#, false, Form::Arrays),

@@ -44,7 +44,7 @@ fn some_velocities_are_too_few() {
 }
 
 #[test]
-fn what_the_user_says_wins() {
+fn explicit_options_override_usual_names() {
     let names = ["a", "b", "vx", "x", "t"];
     let options = ReadOptions {
         state: vec!["b,a".to_owned()],
@@ -67,7 +67,7 @@ fn a_row_number_must_count() {
 }
 
 #[test]
-fn twins_are_refused_unless_numbered() {
+fn duplicate_names_are_refused_unless_numbered() {
     let names = columns(&["episode", "t", "x", "y", "x", "y"]);
     let error = assign(&names, &ReadOptions::default(), "here").unwrap_err();
     assert_eq!(error.code(), "AmbiguousColumn");

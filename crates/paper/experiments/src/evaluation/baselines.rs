@@ -251,7 +251,7 @@ mod tests {
 
     /// The test samples are those of PolicyAlign's evaluation, and no learner has seen them.
     #[test]
-    fn they_are_tested_where_policy_align_is() {
+    fn baselines_share_the_test_samples_of_policy_align() {
         let system = ToySystem { n_trajectories: 20, ..ToySystem::default() };
         let mut rng = generator(1, 0, 0);
         let recordings = system.record(&mut rng).unwrap();

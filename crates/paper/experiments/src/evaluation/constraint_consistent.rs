@@ -142,7 +142,7 @@ mod tests {
 
     /// From clean movements it recovers the policy, which is −∇φ of its potential.
     #[test]
-    fn it_finds_the_policy_of_clean_movements() {
+    fn clean_movements_recover_the_policy() {
         let recordings = ToySystem::default().record(&mut generator(1, 0, 0)).unwrap();
         let learnt = ConstraintConsistent::default().learn(&demonstrations(&recordings).unwrap(), &[]).unwrap();
         let judge = Judge::new(&recordings, &samples_of(&recordings, 0..recordings.len()));

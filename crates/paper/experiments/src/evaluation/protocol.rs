@@ -149,7 +149,7 @@ mod tests {
 
         /// Other true movements change every error, but not a single bit of the learnt policies.
         #[test]
-        fn the_truth_is_for_the_judge_alone(seed in 1_u64..1000, forger in 1000_u64..2000, samples in 20_usize..40, held_out in 0.05..0.5) {
+        fn recorded_truth_affects_only_the_errors(seed in 1_u64..1000, forger in 1000_u64..2000, samples in 20_usize..40, held_out in 0.05..0.5) {
             let record = |potential, seed| {
                 let system = ToySystem { potential, n_trajectories: 12, n_samples: samples, ..ToySystem::default() };
                 system.record(&mut generator(seed, 0, 0)).unwrap()

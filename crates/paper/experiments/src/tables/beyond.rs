@@ -180,7 +180,7 @@ mod tests {
 
     /// From ten constrained movements only the slope GP recovers the policy; every row has its errors.
     #[test]
-    fn a_case_has_an_error_of_everybody() {
+    fn only_the_slope_gp_recovers_the_policy() {
         let setup = beyond().setups.swap_remove(0);
         let rows = setup.trial.run(&mut generator(1, setup.system, 0)).unwrap();
         assert_eq!(rows.len(), setup.rows.len());

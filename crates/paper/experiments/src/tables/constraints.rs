@@ -174,7 +174,7 @@ mod tests {
 
     /// Under A u = b only the slope GP that learns from stretches recovers the policy; every row has its errors.
     #[test]
-    fn a_task_is_seen_through_by_stretches_alone() {
+    fn only_stretches_recover_the_policy_under_a_task() {
         let setup = constraints().unwrap().setups.swap_remove(1);
         assert_eq!(setup.id, "limit-cycle-task");
         let cycles = CyclesWithTask { n_trajectories: 15, ..CyclesWithTask::default() };

@@ -212,7 +212,7 @@ mod tests {
     }
 
     #[test]
-    fn where_nothing_is_changed_the_curves_show_table_1() {
+    fn curves_at_unchanged_settings_equal_table_1() {
         let mut table = run(&table1().unwrap(), "parabola-40x40-medium").remove(0);
         // Only the table has test movements that no learner sees.
         assert!(table.remove(&Measure::NupeFresh).is_some());

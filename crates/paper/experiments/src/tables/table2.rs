@@ -232,7 +232,7 @@ mod tests {
 
     /// The numbers in the remark that are not in the records follow from the set-up.
     #[test]
-    fn the_remark_is_as_the_scene_is() {
+    fn remark_matches_the_scene() {
         let remark = table2().unwrap().remark;
         for setting in quotable().filter(|setting| setting.experiment == "table2") {
             assert!(remark.contains(&setting.used.to_string()), "{} is not told", setting.name);

@@ -26,7 +26,7 @@ fn poses(robot: &Robot, joints: &[f64]) -> Vec<IsometryMatrix3<f64>> {
 }
 
 #[test]
-fn the_document_says_where_the_hands_are() {
+fn playback_poses_and_errors_match_forward_kinematics() {
     let grasp = grasp().unwrap();
     let robot = grasp.body.robot();
     let playback = grasp_playback(1).unwrap();

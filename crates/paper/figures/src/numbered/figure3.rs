@@ -136,7 +136,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn constraints_leave_what_lies_in_their_planes() {
+    fn constraints_project_onto_their_planes() {
         let Vectors { policy, seen, other, other_seen, .. } = vectors().unwrap();
         assert_eq!(seen, [[policy[0], 0.0, policy[2]], [policy[0], policy[1], 0.0]]);
         assert!(policy != other && other_seen == seen[1]);

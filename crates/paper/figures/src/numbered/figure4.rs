@@ -227,7 +227,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_blocked_does_not_move() {
+    fn blocked_components_are_zero() {
         let shown = hills().unwrap();
         for (free, left) in shown.unconstrained.iter().zip(&shown.constrained) {
             assert_eq!(*left, (free.0, free.1, 0.0, free.3));

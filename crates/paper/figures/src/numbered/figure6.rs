@@ -153,7 +153,7 @@ mod tests {
     }
 
     #[test]
-    fn how_far_curves_go_beyond_the_axis_is_said() {
+    fn curves_beyond_the_axis_are_noted() {
         let sources = records();
         let of = |rule| beyond(&series(&sources, "figure6_right", &format!("{rule}-"), &NOISE_PERCENT).unwrap());
         assert!(of(RULES[0].0).is_none());

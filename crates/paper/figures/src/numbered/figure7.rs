@@ -68,7 +68,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn frames_share_the_way_not_the_time() {
+    fn frames_are_evenly_spaced_along_the_path() {
         // Half of the path in one step, then slower and slower.
         let palms: Vec<Vec<f64>> = (0..60).map(|i| vec![1.0 - 0.5_f64.powi(i), 0.0, 0.0, 0.0, 0.0, 0.0]).collect();
         let stages = stages(&palms);

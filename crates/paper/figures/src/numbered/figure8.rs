@@ -297,7 +297,7 @@ mod tests {
     }
 
     #[test]
-    fn ends_are_as_said_beside_the_paper_s_figure() {
+    fn end_distances_match_the_texts() {
         let playback = played(&beside_paper::records()).unwrap();
         let end = |learner| 100.0 * Distances::of(&playback, learner).unwrap().at_end();
         let ends: Vec<f64> = shown(&playback).map(end).collect();

@@ -81,7 +81,7 @@ mod tests {
 
     /// The records confirm the reservations that contain no number, or a number in words.
     #[test]
-    fn reservations_are_true() {
+    fn reservations_match_the_records() {
         let said: Vec<&str> =
             registry().unwrap().iter().flat_map(|experiment| experiment.reservations).copied().collect();
         assert_eq!(said.len(), 4, "each has its lines below");

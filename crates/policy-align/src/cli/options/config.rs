@@ -171,7 +171,7 @@ mod tests {
     }
 
     #[test]
-    fn what_no_file_can_hold_is_a_fault_of_the_command_line() {
+    fn values_beyond_toml_are_command_line_faults() {
         let given =
             FitFlags::augment_args(Command::new("fit")).try_get_matches_from(["fit", "--seed", &u64::MAX.to_string()]);
         let given = <FitFlags as clap::FromArgMatches>::from_arg_matches(&given.unwrap()).unwrap();
@@ -205,7 +205,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_printed_can_be_read() {
+    fn printed_configurations_can_be_read() {
         let given: FitFlags = toml::from_str("seed = 9\nhold_out = ['a']").unwrap();
         let text = printed(&ReadFlags::default(), &PrepareFlags::default(), &given).unwrap();
         let fit = parsed(&text).unwrap().under("fit", &FitFlags::default()).unwrap();

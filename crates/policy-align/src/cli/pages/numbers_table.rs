@@ -72,7 +72,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_not_good_is_marked() {
+    fn bad_numbers_are_marked() {
         let page = numbers([
             ("a", Some(14.0), Good::Below(0.12)),
             ("b", Some(0.1), Good::Below(0.12)),

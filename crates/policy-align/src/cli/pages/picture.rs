@@ -256,7 +256,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_unknown_is_covered_once() {
+    fn unknown_areas_are_covered_once() {
         let grid: Vec<f64> = (0..4).map(f64::from).collect();
         let known = [[false; 4], [false, true, true, false], [false, true, true, false], [false; 4]].map(Vec::from);
         let area = |[from, to, below, above]: &[f64; 4]| (to - from) * (above - below);

@@ -157,7 +157,7 @@ mod tests {
     }
 
     #[test]
-    fn it_rests_where_the_policy_presses_straight_on_the_face() {
+    fn tip_rests_where_the_policy_is_normal_to_the_face() {
         let finger = Finger::new().unwrap();
         let contact = finger.contact().unwrap();
         let movement = finger.movement(&contact).unwrap();
@@ -169,7 +169,7 @@ mod tests {
     }
 
     #[test]
-    fn alone_it_stretches() {
+    fn an_unconstrained_finger_stretches() {
         let finger = Finger::new().unwrap();
         let movement = finger.movement(&Unconstrained { dim: 2 }).unwrap();
         for (sample, (a, b)) in movement.angles.iter().enumerate() {

@@ -107,7 +107,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn alignment_makes_one_bowl_of_what_starts_at_one_height() {
+    fn alignment_recovers_the_common_potential() {
         let levels = levels(1).unwrap();
         assert_eq!(levels.movements.iter().filter(|movement| movement.after.is_none()).count(), LEFT_OUT);
         assert!(levels.movements.iter().all(|movement| movement.before[0] == levels.movements[0].before[0]));

@@ -228,7 +228,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn any_seed_has_a_data_set_that_comes_apart_in_a_few_steps_down_to_what_is_kept() {
+    fn every_seed_splits_in_a_few_steps() {
         for seed in 0..4 {
             let ComingApart { steps, kept, movements, .. } = coming_apart(seed).unwrap();
             assert!((3..=MOST_STEPS).contains(&steps.len()));

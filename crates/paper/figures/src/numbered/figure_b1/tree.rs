@@ -111,7 +111,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_kept_stands_first_and_is_marked_all_the_way() {
+    fn the_kept_group_comes_first_and_its_path_is_marked() {
         let steps = steps();
         let tree = tree(&steps);
         let way: Vec<&[usize]> = tree.all().into_iter().filter(|node| node.kept).map(|node| &node.group[..]).collect();
@@ -120,7 +120,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_stands_on_anything_else() {
+    fn nodes_do_not_overlap() {
         let steps = steps();
         let tree = tree(&steps);
         let mut all = tree.all();

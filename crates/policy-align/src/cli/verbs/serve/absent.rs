@@ -31,7 +31,7 @@ mod tests {
     use crate::cli::session::Session;
 
     #[test]
-    fn a_build_without_ros_2_says_what_has_it() {
+    fn a_build_without_ros_2_names_the_feature() {
         let command = Serve::augment_args(Command::new("serve"));
         let given = command.try_get_matches_from("serve toy.json --ros2 --rate 20".split(' ')).unwrap();
         let failure = Serve::from_arg_matches(&given).unwrap().run(&Session::default()).unwrap_err();
