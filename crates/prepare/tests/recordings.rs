@@ -664,7 +664,7 @@ proptest! {
         prop_assert!(!says(&of(10.0), "largest speed"));
     }
 
-    /// Velocities recorded later or earlier than positions: the finding states the lag.
+    /// Velocities recorded later or earlier than positions: the finding states the lag, and exact positions replace late velocities.
     #[test]
     fn a_lag_is_found(samples in prop_oneof![-6..-1isize, 2..7isize], rate in 1.0..3.0f64) {
         let recordings = moving(&["x", "y"], |k, t| {
@@ -680,7 +680,10 @@ proptest! {
             episode.velocities = Some(DMatrix::from_fn(2, SAMPLES, |axis, i| u[(axis, at(i))]));
         }
         let words = format!("{} s {}", prepare_numbers(STEP * samples.unsigned_abs() as f64), if samples > 0 { "later" } else { "earlier" });
-        prop_assert!(says(&self::prepared(&late), &words), "{} not said", words);
+        let prepared = self::prepared(&late);
+        prop_assert!(says(&prepared, &words), "{} not said", words);
+        let from = if samples > 0 { VelocitySource::Positions } else { VelocitySource::Recorded };
+        prop_assert_eq!(prepared.velocities, from);
     }
 
     /// q and −q are one orientation: recordings with sign changes give the same result as without.

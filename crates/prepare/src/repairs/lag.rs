@@ -1,9 +1,10 @@
-//! Detects velocities that were recorded later, or earlier, than the positions.
+//! Detects velocities that were recorded later, or earlier, than the positions, and replaces late ones.
 
 use motion::{Episode, Verdict, upper_median};
 
 use crate::notes::Notes;
 use crate::numbers::{percent, short};
+use crate::samples::noise::Noise;
 
 /// Maximum number of steps to compare, evenly spaced.
 const STEPS: usize = 20_000;
@@ -18,26 +19,33 @@ const BETTER: f64 = 0.3;
 /// Share of the squared velocities that a lag may change before the policy is in doubt.
 const HARMLESS: f64 = 0.15;
 
-/// Reports the shift that makes velocities agree with the steps.
-pub(crate) fn remark(episodes: &[Episode], notes: &mut Notes) {
-    let Some(lag) = lag(episodes) else { return };
-    let (when, next) = if lag.seconds > 0.0 {
-        ("later", "shift these columns, or --integration displacement takes velocities from the positions")
-    } else {
-        (
-            "earlier",
-            "correct if they are commands that the robot follows with this delay; otherwise shift them, or --integration displacement takes velocities from the positions",
-        )
+/// Reports the shift that makes velocities agree with the steps. Returns whether the positions replace them: if the velocities are late
+/// and the noise of the positions changes the steps less than the shift does. Early velocities may be commands.
+pub(crate) fn are_replaced(episodes: &[Episode], noise: &Noise, notes: &mut Notes) -> bool {
+    let Some(lag) = lag(episodes) else { return false };
+    let late = lag.seconds > 0.0;
+    let replaced = late && noise.step_share < lag.changed;
+    let next = match (replaced, late) {
+        (true, _) => "they are taken from the positions; shift these columns to use them",
+        (false, true) => "shift these columns, or --integration displacement takes velocities from the positions",
+        (false, false) => {
+            "correct if they are commands that the robot follows with this delay; otherwise shift them, or --integration displacement takes velocities from the positions"
+        }
     };
+    let (seconds, when) = (short(lag.seconds.abs()), if late { "later" } else { "earlier" });
     notes.found(
-        if lag.changed > HARMLESS { Verdict::Doubtful } else { Verdict::Good },
+        if lag.changed > HARMLESS && !replaced { Verdict::Doubtful } else { Verdict::Good },
         format!(
-            "velocities were recorded {} s {when} than the steps that they match (this changes {} of them)",
-            short(lag.seconds.abs()),
+            "velocities were recorded {seconds} s {when} than the steps that they match (this changes {} of them)",
             percent(lag.changed)
         ),
         next,
     );
+    if replaced {
+        let why = format!("those recorded are {seconds} s late, and noise of positions is smaller than the difference");
+        notes.decided("velocities", "from positions", why, "--integration");
+    }
+    replaced
 }
 
 struct Lag {

@@ -37,9 +37,7 @@ pub(crate) fn decide(
 ) -> Agreement {
     let recorded = episodes.iter().filter(|episode| episode.velocities.is_some()).count();
     if recorded < episodes.len() || options.velocities == VelocityUse::Ignored {
-        for episode in episodes.iter_mut() {
-            episode.velocities = None;
-        }
+        discard(episodes);
         let why = match recorded {
             0 => "none recorded".to_owned(),
             _ if recorded < episodes.len() => format!("only {recorded} of {} episodes have them", episodes.len()),
@@ -61,12 +59,13 @@ pub(crate) fn decide(
         notes.decided("velocities", "recorded", "used as requested", "--integration");
         return Agreement::Own;
     }
-    lag::remark(episodes, notes);
+    if lag::are_replaced(episodes, noise, notes) {
+        discard(episodes);
+        return Agreement::None;
+    }
     let fit = Steps::of(episodes, noise);
     if fit.explained < UNRELATED {
-        for episode in episodes.iter_mut() {
-            episode.velocities = None;
-        }
+        discard(episodes);
         let explained = percent(fit.explained.max(0.0));
         let why = format!("those recorded explain {explained} of the steps");
         notes.decided("velocities", "from positions", why, "--integration");
@@ -89,6 +88,11 @@ pub(crate) fn decide(
     }
     rescale(episodes, &fit, channels, notes);
     Agreement::Own
+}
+
+/// Leaves the positions alone.
+fn discard(episodes: &mut [Episode]) {
+    episodes.iter_mut().for_each(|episode| episode.velocities = None);
 }
 
 /// A part of a movement: its step D, and S = Σ u δt, the step computed from its velocities; both (n).
