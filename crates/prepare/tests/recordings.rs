@@ -664,13 +664,14 @@ proptest! {
         prop_assert!(!says(&of(10.0), "largest speed"));
     }
 
-    /// Velocities recorded later or earlier than positions: the finding states the lag, and exact positions replace late velocities.
+    /// Velocities recorded later or earlier than positions: the finding states the lag, and positions replace late velocities.
     #[test]
-    fn a_lag_is_found(samples in prop_oneof![-6..-1isize, 2..7isize], rate in 1.0..3.0f64) {
+    fn a_lag_is_found(samples in prop_oneof![-6..-1isize, 2..7isize], rate in 1.0..3.0f64, noise in 0.0..0.001f64) {
         let recordings = moving(&["x", "y"], |k, t| {
             let at = |t: f64| [(rate * t + k as f64).sin(), (0.7 * rate * t - k as f64).cos()];
             let u = [rate * (rate * t + k as f64).cos(), -0.7 * rate * (0.7 * rate * t - k as f64).sin()];
-            (DVector::from_column_slice(&at(t)), DVector::from_column_slice(&u))
+            let off = |axis: f64| noise * ((1e4 * (k as f64 + 7.0 * axis) + 1e3 * t).sin() * 43_758.545_3).fract();
+            (DVector::from_column_slice(&at(t)) + DVector::from_column_slice(&[off(1.0), off(2.0)]), DVector::from_column_slice(&u))
         });
         prop_assert!(!says(&self::prepared(&recordings), "than the steps"));
         let mut late = recordings.clone();
@@ -682,8 +683,7 @@ proptest! {
         let words = format!("{} s {}", prepare_numbers(STEP * samples.unsigned_abs() as f64), if samples > 0 { "later" } else { "earlier" });
         let prepared = self::prepared(&late);
         prop_assert!(says(&prepared, &words), "{} not said", words);
-        let from = if samples > 0 { VelocitySource::Positions } else { VelocitySource::Recorded };
-        prop_assert_eq!(prepared.velocities, from);
+        prop_assert_eq!(prepared.velocities == VelocitySource::Positions, samples > 0, "{:?}", prepared.velocities);
     }
 
     /// q and −q are one orientation: recordings with sign changes give the same result as without.

@@ -1,6 +1,6 @@
 //! Detects velocities that were recorded later, or earlier, than the positions, and replaces late ones.
 
-use motion::{Episode, Verdict, upper_median};
+use motion::{Episode, Verdict};
 
 use crate::notes::Notes;
 use crate::numbers::{percent, short};
@@ -16,13 +16,18 @@ const SHARE: usize = 4;
 const LEAST: isize = 3;
 /// Maximum mismatch of the shifted velocities with the steps, as a share of the mismatch as recorded.
 const BETTER: f64 = 0.3;
+/// A shift must reduce Σ mismatch by this multiple of the noise variance of a step's velocity along one axis. Without a lag, the
+/// correlation of noise with the change of velocities reduces it by about one such variance.
+const SIGNIFICANT: f64 = 50.0;
+/// Share of the steps, those with the smallest mismatches, that determine the shift.
+const KEPT: f64 = 0.9;
 /// Share of the squared velocities that a lag may change before the policy is in doubt.
 const HARMLESS: f64 = 0.15;
 
 /// Reports the shift that makes velocities agree with the steps. Returns whether the positions replace them: if the velocities are late
 /// and the noise of the positions changes the steps less than the shift does. Early velocities may be commands.
 pub(crate) fn are_replaced(episodes: &[Episode], noise: &Noise, notes: &mut Notes) -> bool {
-    let Some(lag) = lag(episodes) else { return false };
+    let Some(lag) = lag(episodes, noise) else { return false };
     let late = lag.seconds > 0.0;
     let replaced = late && noise.step_share < lag.changed;
     let next = match (replaced, late) {
@@ -55,8 +60,8 @@ struct Lag {
     changed: f64,
 }
 
-/// The shift at which velocities explain the steps best, if it matters.
-fn lag(episodes: &[Episode]) -> Option<Lag> {
+/// The shift at which velocities explain the steps best, if it matters beyond the noise of the positions.
+fn lag(episodes: &[Episode], noise: &Noise) -> Option<Lag> {
     let mut lengths: Vec<usize> = episodes.iter().map(Episode::n_samples).collect();
     lengths.sort_unstable();
     let most = (lengths.get(lengths.len() / 2)? / SHARE).min(SAMPLES);
@@ -72,16 +77,30 @@ fn lag(episodes: &[Episode]) -> Option<Lag> {
     let mismatches =
         |shift| compared.iter().map(|(episode, step)| mismatch(episode, *step, shift)).collect::<Option<Vec<f64>>>();
     let lefts = (-halves..=halves).map(|shift| Some((shift, mismatches(shift)?))).collect::<Option<Vec<_>>>()?;
-    // Uses medians, because where a constraint ends, a few steps lie between two velocities.
-    let usual = |mismatches: &[f64]| upper_median(mismatches.to_vec()).unwrap_or(0.0);
-    let (best, shifted) = lefts.iter().min_by(|a, b| usual(&a.1).total_cmp(&usual(&b.1)))?;
+    let (best, shifted) = lefts.iter().min_by(|a, b| without_switches(&a.1).total_cmp(&without_switches(&b.1)))?;
     let near = lefts.iter().filter(|(shift, _)| shift.abs() <= 1);
     let sum = |mismatches: &Vec<f64>| mismatches.iter().sum::<f64>();
     let (least, recorded) = (sum(shifted), near.map(|(_, left)| sum(left)).fold(f64::INFINITY, f64::min));
     let power = compared.iter().map(|(episode, step)| rate(episode, *step).norm_squared()).sum::<f64>();
+    // Both ends of a step contain the positions' noise.
+    let variance = noise.positions.as_ref().map_or(0.0, |of| 2.0 * of.iter().map(|sd| sd * sd).sum::<f64>());
+    let of_noise = compared.iter().map(|(episode, step)| variance / episode.times.seconds(*step, *step + 1).powi(2));
+    let floor = of_noise.sum::<f64>().min(least);
+    let of_an_axis = floor / (compared.len() * episodes[0].positions.nrows()) as f64;
+    let is_explained = least - floor <= BETTER * (recorded - floor) && recorded - least >= SIGNIFICANT * of_an_axis;
     let step = episodes.iter().find_map(|episode| episode.times.median_step())?;
-    let is_lag = best.abs() >= LEAST && best.abs() < halves && least <= BETTER * recorded;
-    is_lag.then(|| Lag { seconds: *best as f64 / 2.0 * step, changed: (recorded - least) / power })
+    let is_lag = best.abs() >= LEAST && best.abs() < halves && is_explained;
+    is_lag.then(|| Lag { seconds: *best as f64 / 2.0 * step, changed: (recorded - least) / (power - floor) })
+}
+
+/// The sum of all but the largest mismatches: if a constraint ends within a step, the step lies between two velocities.
+fn without_switches(mismatches: &[f64]) -> f64 {
+    let mut mismatches = mismatches.to_vec();
+    let kept = (KEPT * mismatches.len() as f64) as usize;
+    if kept < mismatches.len() {
+        mismatches.select_nth_unstable_by(kept, f64::total_cmp);
+    }
+    mismatches[..kept].iter().sum()
 }
 
 /// Mean velocity of a step.
