@@ -92,7 +92,9 @@ pub(crate) fn decide(
 
 /// Leaves the positions alone.
 fn discard(episodes: &mut [Episode]) {
-    episodes.iter_mut().for_each(|episode| episode.velocities = None);
+    for episode in episodes {
+        episode.velocities = None;
+    }
 }
 
 /// A part of a movement: its step D, and S = Σ u δt, the step computed from its velocities; both (n).
