@@ -50,7 +50,7 @@ impl ContextUse {
 /// The use of recorded velocities.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum VelocityUse {
-    /// Used if they agree with the steps.
+    /// Used if they agree with the steps and are not late.
     #[default]
     Auto,
     /// Used if every episode has them; otherwise a finding reports that they are not.

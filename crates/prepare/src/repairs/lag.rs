@@ -60,6 +60,16 @@ struct Lag {
     changed: f64,
 }
 
+/// The mismatch that remains after a shift.
+struct Left {
+    /// In half samples, positive if velocities are late.
+    shift: isize,
+    /// Σ mismatch over the compared steps.
+    sum: f64,
+    /// The same [`without_switches`].
+    without_switches: f64,
+}
+
 /// The shift at which velocities explain the steps best, if it matters beyond the noise of the positions.
 fn lag(episodes: &[Episode], noise: &Noise) -> Option<Lag> {
     let mut lengths: Vec<usize> = episodes.iter().map(Episode::n_samples).collect();
@@ -76,11 +86,15 @@ fn lag(episodes: &[Episode], noise: &Noise) -> Option<Lag> {
     let compared: Vec<(&Episode, usize)> = comparable().step_by(every).collect();
     let mismatches =
         |shift| compared.iter().map(|(episode, step)| mismatch(episode, *step, shift)).collect::<Option<Vec<f64>>>();
-    let lefts = (-halves..=halves).map(|shift| Some((shift, mismatches(shift)?))).collect::<Option<Vec<_>>>()?;
-    let (best, shifted) = lefts.iter().min_by(|a, b| without_switches(&a.1).total_cmp(&without_switches(&b.1)))?;
-    let near = lefts.iter().filter(|(shift, _)| shift.abs() <= 1);
-    let sum = |mismatches: &Vec<f64>| mismatches.iter().sum::<f64>();
-    let (least, recorded) = (sum(shifted), near.map(|(_, left)| sum(left)).fold(f64::INFINITY, f64::min));
+    let left = |shift| {
+        let mismatches = mismatches(shift)?;
+        let sum = mismatches.iter().sum::<f64>();
+        Some(Left { shift, sum, without_switches: without_switches(mismatches) })
+    };
+    let lefts = (-halves..=halves).map(left).collect::<Option<Vec<_>>>()?;
+    let best = lefts.iter().min_by(|a, b| a.without_switches.total_cmp(&b.without_switches))?;
+    let near = lefts.iter().filter(|left| left.shift.abs() <= 1);
+    let (least, recorded) = (best.sum, near.map(|left| left.sum).fold(f64::INFINITY, f64::min));
     let power = compared.iter().map(|(episode, step)| rate(episode, *step).norm_squared()).sum::<f64>();
     // Both ends of a step contain the positions' noise.
     let variance = noise.positions.as_ref().map_or(0.0, |of| 2.0 * of.iter().map(|sd| sd * sd).sum::<f64>());
@@ -89,13 +103,12 @@ fn lag(episodes: &[Episode], noise: &Noise) -> Option<Lag> {
     let of_an_axis = floor / (compared.len() * episodes[0].positions.nrows()) as f64;
     let is_explained = least - floor <= BETTER * (recorded - floor) && recorded - least >= SIGNIFICANT * of_an_axis;
     let step = episodes.iter().find_map(|episode| episode.times.median_step())?;
-    let is_lag = best.abs() >= LEAST && best.abs() < halves && is_explained;
-    is_lag.then(|| Lag { seconds: *best as f64 / 2.0 * step, changed: (recorded - least) / (power - floor) })
+    let is_lag = best.shift.abs() >= LEAST && best.shift.abs() < halves && is_explained;
+    is_lag.then(|| Lag { seconds: best.shift as f64 / 2.0 * step, changed: (recorded - least) / (power - floor) })
 }
 
 /// The sum of all but the largest mismatches: if a constraint ends within a step, the step lies between two velocities.
-fn without_switches(mismatches: &[f64]) -> f64 {
-    let mut mismatches = mismatches.to_vec();
+fn without_switches(mut mismatches: Vec<f64>) -> f64 {
     let kept = (KEPT * mismatches.len() as f64) as usize;
     if kept < mismatches.len() {
         mismatches.select_nth_unstable_by(kept, f64::total_cmp);
