@@ -41,7 +41,7 @@
 //!
 //! # Equations
 //!
-//! Comments cite (S1)–(S47) and (R1)–(R9). [`equations`] defines them and lists the steps of the search; it is
+//! Comments cite (S1)–(S47) and (R1)–(R10). [`equations`] defines them and lists the steps of the search; it is
 //! `docs/slope-gp.md` of the repository. `docs/which-learner.md` compares the learners, `docs/decisions/gp.md` gives
 //! the reasons.
 //!
@@ -101,7 +101,7 @@ pub use left_out::curl_test::CurlTest;
 pub use reading::Hypothesis;
 pub use reading::auto_gp::{AutoFit, AutoGp};
 pub use reading::near_passes::NearPasses;
-pub use reading::numbers::{LeftOutRow, ReadingNumbers, TrajectoryErrors};
+pub use reading::numbers::{FreeRows, LeftOutRow, ReadingNumbers, TrajectoryErrors};
 pub use report::identifiability::{Identifiability, LeastSeen};
 pub use report::trust_report::{FamilyNumbers, FamilyReport, ModelKind, TrustReport};
 pub use rows::front_end::FrontEnd;

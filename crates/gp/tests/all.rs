@@ -8,6 +8,7 @@ mod constraint_estimates;
 mod context;
 mod drawn;
 mod fits;
+mod free_rows;
 mod fresh;
 mod fresh_movements;
 mod goals;

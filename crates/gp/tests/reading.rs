@@ -62,7 +62,7 @@ proptest! {
     ) {
         let least_seen = LeastSeen { share: 1.0, direction: vec![1.0] };
         let grouping = Grouping::Trajectories;
-        let n = ReadingNumbers { a_s, a_d, q, t, lambda, t_lambda, p_d, gap, least_seen, hidden, trajectories, grouping };
+        let n = ReadingNumbers { a_s, a_d, q, t, lambda, t_lambda, p_d, gap, least_seen, hidden, trajectories, grouping, free: None };
         prop_assert_eq!(n.reading(), if p_d > 0.5 && gap > 0.01 { Hypothesis::Unexplained } else { Hypothesis::Free });
         prop_assert!(!n.takes_slope(Hypothesis::Free) && !n.text(0.1).contains("leans towards constraints"));
     }
@@ -83,6 +83,7 @@ fn numbers() -> ReadingNumbers {
         hidden: 0.3,
         trajectories: 6,
         grouping: Grouping::Trajectories,
+        free: None,
     }
 }
 

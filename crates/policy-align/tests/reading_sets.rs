@@ -65,7 +65,7 @@ fn learnt(set: &Set, seed: u64) -> Option<AutoFit> {
                 front_end,
                 slope: SlopeGp { max_rows: MAX_ROWS, hyper_rows, push_test: PushTest::Fit, ..SlopeGp::default() },
                 direct: DirectGp { max_rows: MAX_ROWS, hyper_rows, ..DirectGp::default() },
-                reading: None,
+                ..AutoGp::default()
             };
             return learner.fit(&rows, &mut rng(seed)).ok();
         }
@@ -93,8 +93,9 @@ fn learnt(set: &Set, seed: u64) -> Option<AutoFit> {
 
 fn line(set: &Set, seed: u64) -> Option<String> {
     let fit = learnt(set, seed)?;
-    let ReadingNumbers { a_s, a_d, q, t, lambda, t_lambda, p_d, gap, ref least_seen, hidden, trajectories, .. } =
-        *fit.numbers();
+    let ReadingNumbers {
+        a_s, a_d, q, t, lambda, t_lambda, p_d, gap, ref least_seen, hidden, trajectories, free, ..
+    } = *fit.numbers();
     let dim = least_seen.direction.len();
     let seen = least_seen.share * dim as f64;
     let [slope, direct, either]: [&dyn LearntPolicy; 3] = [fit.slope(), fit.direct(), &fit];
@@ -102,7 +103,7 @@ fn line(set: &Set, seed: u64) -> Option<String> {
     let numbers = [a_s, a_d, q, t, lambda, t_lambda, p_d, gap, seen, hidden].map(|number| format!("{number:.6e}"));
     let report = fit.slope().report();
     Some(format!(
-        "{}\t{}\t{seed}\t{:?}\t{dim}\t{trajectories}\t{}\t{}\t{}\t{:.3e}\t{:.3e}",
+        "{}\t{}\t{seed}\t{:?}\t{dim}\t{trajectories}\t{}\t{}\t{}\t{:.3e}\t{:.3e}\t{:.3}",
         set.name,
         set.truth,
         fit.reading(),
@@ -111,6 +112,7 @@ fn line(set: &Set, seed: u64) -> Option<String> {
         errors.join("\t"),
         fit.expected_nupe(),
         1.0 - report.r_squared,
+        free.map_or(1.0, |free| free.share),
     ))
 }
 
@@ -207,7 +209,7 @@ fn table() {
     let seeds = std::env::var("SEEDS").unwrap_or_else(|_| "1,2,3".to_owned());
     let only = std::env::var("ONLY").unwrap_or_default();
     println!(
-        "set\ttruth\tseed\treading\tdim\ttrajectories\tpush\ta_s\ta_d\tq\tt\tlambda\tt_lambda\tp_d\tgap\tseen\thidden\tnupe_slope\tnupe_direct\tnupe\texpected\tunexplained"
+        "set\ttruth\tseed\treading\tdim\ttrajectories\tpush\ta_s\ta_d\tq\tt\tlambda\tt_lambda\tp_d\tgap\tseen\thidden\tnupe_slope\tnupe_direct\tnupe\texpected\tunexplained\tfree"
     );
     for seed in seeds.split(',').map(|seed| seed.parse().unwrap()) {
         for set in robots(seed).into_iter().chain(beyond(seed)).filter(|set| set.name.contains(&only)) {

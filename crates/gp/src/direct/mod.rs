@@ -2,5 +2,6 @@
 
 pub(crate) mod data;
 pub(crate) mod direct_gp;
+pub(crate) mod free_rows;
 pub(crate) mod learner;
 pub(crate) mod model;

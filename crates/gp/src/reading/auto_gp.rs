@@ -1,3 +1,4 @@
+use std::borrow::Cow;
 use std::cmp::Ordering;
 
 use motion::{Certainty, Demonstrations, LearnError, Learner, LearntPolicy, Policy, Potential, SampleIndex};
@@ -6,6 +7,7 @@ use rand::Rng;
 use serde::{Deserialize, Serialize};
 
 use crate::direct::direct_gp::{DirectFit, DirectGp};
+use crate::direct::free_rows::near;
 use crate::left_out::comparison::{difference, much_better};
 use crate::reading::Hypothesis;
 use crate::reading::both::Both;
@@ -20,7 +22,7 @@ use crate::{FrontEnd, GpError, Rows};
 
 /// Fits the slope GP and the direct GP to the same rows, compares them on held-out demonstrations, and returns the policy that the data
 /// support (R8). No single learner is right for both free and constrained movement.
-#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct AutoGp {
     /// The front end, which turns recordings into rows.
     pub front_end: FrontEnd,
@@ -30,6 +32,15 @@ pub struct AutoGp {
     pub direct: DirectGp,
     /// A reading given by the user, which overrides that of the data.
     pub reading: Option<Hypothesis>,
+    /// Whether to look for rows of free motion among constrained ones (R10), unless the reading is given.
+    pub free_rows: bool,
+}
+
+impl Default for AutoGp {
+    fn default() -> Self {
+        let (front_end, slope, direct) = (FrontEnd::default(), SlopeGp::default(), DirectGp::default());
+        AutoGp { front_end, slope, direct, reading: None, free_rows: true }
+    }
 }
 
 /// Both policies, and the selection of the one that the data support.
@@ -38,6 +49,9 @@ pub struct AutoGp {
 pub struct AutoFit {
     pub(crate) slope: SlopeFit,
     pub(crate) direct: DirectFit,
+    /// The direct GP of the free rows, if only some rows were constrained.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) freely: Option<DirectFit>,
     pub(crate) numbers: ReadingNumbers,
     /// The reading at the time of learning. Older stored models have none; the current rule determines theirs.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -59,8 +73,11 @@ impl AutoGp {
     pub fn fit<R: Rng + ?Sized>(&self, rows: &Rows, rng: &mut R) -> Result<AutoFit, GpError> {
         let kept = self.slope.selection()?.keep(rows, rng)?;
         let (slope, direct) = rayon::join(|| outcome(&self.slope, &kept), || self.direct.outcome(&kept));
-        let few = Both { kept, slope: slope?, direct: direct? };
-        let free = few.compared(None).0.agree_on_free_movement();
+        let few = Both { kept, slope: slope?, direct: direct?, freely: None };
+        let look = self.free_rows && self.reading.is_none();
+        let few = if look { few.with_free_rows(&self.direct) } else { few };
+        // Free rows that explain the others leave no push to explain.
+        let free = few.freely.is_some() || few.compared(None).0.agree_on_free_movement();
         let pushed = if free { None } else { pushed(&self.slope, rows, &few.kept, &few.slope) };
         // If the directions of stretches are not informative, nothing pushed.
         let telling = pushed.filter(|pushed| few.compared(Some(pushed)).0.stretches_tell());
@@ -77,23 +94,25 @@ impl AutoGp {
         };
         let (numbers, left_out) = both.compared(pushed.as_ref());
         let reading = if pushed.is_some() { Hypothesis::Constrained } else { numbers.reading() };
-        let Both { kept, slope, direct } = both;
+        let Both { kept, slope, direct, freely } = both;
         let (slope, kept) = match pushed {
             Some(Pushed { outcome, kept, .. }) => (outcome, kept),
             None => (slope, kept),
         };
         // If the slope policy is the better one, left-out movements test it in all directions, whatever their own.
-        let tested = reading == Hypothesis::Constrained || numbers.shows_a_potential();
+        let tested = freely.is_none() && (reading == Hypothesis::Constrained || numbers.shows_a_potential());
         let across = if tested { CrossPathEvidence::Tested } else { CrossPathEvidence::Untested };
         let mut report = report(&ReportInput { outcome: &slope, kept: &kept, rows, across });
         if across == CrossPathEvidence::Untested {
-            let away = difference(&direct.actions, &slope.taken.actions);
+            let actions = freely.as_ref().map_or(&direct.actions, |freely| &freely.direct.actions);
+            let away = difference(actions, &slope.taken.actions);
             report.expected_nupe = expected_beside((reading, numbers.gap, numbers.p_d), away, report.expected_nupe);
         }
         let slope = SlopeFit { model: slope.taken.model, report };
-        let (direct, (left_out, left_out_rows)) = (direct.fit, left_out);
+        let (direct, freely) = (direct.fit, freely.map(|freely| freely.direct.fit));
+        let (left_out, left_out_rows) = left_out;
         let (reading, overridden) = (Some(reading), self.reading);
-        Ok(AutoFit { slope, direct, numbers, reading, overridden, left_out, left_out_rows })
+        Ok(AutoFit { slope, direct, freely, numbers, reading, overridden, left_out, left_out_rows })
     }
 }
 
@@ -163,15 +182,30 @@ impl AutoFit {
         &self.slope
     }
 
-    /// The policy for free movement.
+    /// The policy for free movement, learnt from all rows.
     pub fn direct(&self) -> &DirectFit {
         &self.direct
+    }
+
+    /// The direct policy that [`AutoFit::numbers`] describes: learnt from the free rows if constraints deflected others (R10), else from
+    /// all.
+    pub fn direct_of_free_rows(&self) -> &DirectFit {
+        self.freely.as_ref().unwrap_or(&self.direct)
+    }
+
+    /// The rows that move freely, averaged as for learning, if constraints deflected others (R10); else all rows, unchanged.
+    pub fn free_rows<'a>(&self, rows: &'a Rows) -> Cow<'a, Rows> {
+        let (Some(free), Some(freely)) = (self.numbers.free, &self.freely) else { return Cow::Borrowed(rows) };
+        let rows = rows.averaged();
+        let is_free = near(&freely.model.moving_actions(rows.states().as_view()), rows.velocities(), free.within);
+        Cow::Owned(rows.chosen(&|row| is_free[row]))
     }
 
     /// Expected error (nUPE) of the returned policy (R6).
     pub fn expected_nupe(&self) -> f64 {
         match (self.takes_slope(), self.reading()) {
             (true, _) => self.slope.report.expected_nupe,
+            (false, Hypothesis::Constrained) if self.freely.is_some() => self.numbers.error_of_free_rows(),
             (false, Hypothesis::Constrained) => self.numbers.p_d.max(self.numbers.gap),
             (false, _) => self.numbers.p_d,
         }
@@ -197,7 +231,7 @@ impl AutoFit {
     }
 
     fn handed_out(&self) -> &dyn LearntPolicy {
-        if self.takes_slope() { &self.slope } else { &self.direct }
+        if self.takes_slope() { &self.slope } else { self.direct_of_free_rows() }
     }
 }
 

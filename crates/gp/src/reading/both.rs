@@ -1,7 +1,8 @@
 //! The slope GP and the direct GP on the same rows, before one of them is selected.
 
 use crate::Rows;
-use crate::direct::direct_gp::DirectOutcome;
+use crate::direct::direct_gp::{DirectGp, DirectOutcome};
+use crate::direct::free_rows::OfFreeRows;
 use crate::reading::numbers::{Compared, LeftOutRow, ReadingNumbers, TrajectoryErrors};
 use crate::rows::kept::Kept;
 use crate::slope::all_rows::{OnAllRows, on_all_samples};
@@ -14,18 +15,36 @@ pub(crate) struct Both {
     pub(crate) kept: Kept,
     pub(crate) slope: Outcome,
     pub(crate) direct: DirectOutcome,
+    /// The direct GP of the free rows, which replaces that of all rows.
+    pub(crate) freely: Option<OfFreeRows>,
 }
 
 /// Left-out errors of trajectories, and of rows.
 pub(crate) type LeftOutPredictions = (Vec<TrajectoryErrors>, Vec<LeftOutRow>);
 
 impl Both {
+    /// Adds the direct GP of the free rows if it explains the others (R10).
+    pub(crate) fn with_free_rows(mut self, gp: &DirectGp) -> Both {
+        self.freely = OfFreeRows::of(gp, &self.kept, &self.direct);
+        self.freely_if_it_explains_all()
+    }
+
+    /// Drops the direct GP of the free rows if the constrained rows contradict it.
+    fn freely_if_it_explains_all(mut self) -> Both {
+        let explains = self.compared(None).0.free_rows_explain_all();
+        self.freely = self.freely.filter(|_| explains);
+        self
+    }
+
     /// Both models on all rows if that improves the slope GP; otherwise unchanged.
     pub(crate) fn on_all_rows(self, gp: &SlopeGp, rows: &Rows) -> Both {
         let all = on_all_samples(gp, rows, &self.kept, &self.slope);
         let both = all.and_then(|all| Some((self.direct.on_all_rows(&all.kept, gp.inducing_rows)?, all)));
         match both {
-            Some((direct, OnAllRows { kept, outcome })) => Both { kept, slope: outcome, direct },
+            Some((direct, OnAllRows { kept, outcome })) => {
+                let freely = self.freely.and_then(|freely| freely.on_all_rows(&kept, gp.inducing_rows));
+                Both { kept, slope: outcome, direct, freely }.freely_if_it_explains_all()
+            }
             None => self,
         }
     }
@@ -33,7 +52,8 @@ impl Both {
     /// Compares their predictions of left-out trajectories on these rows, with the slope GP of `pushed`, if any, in place of
     /// their own.
     pub(crate) fn compared(&self, pushed: Option<&Pushed>) -> (ReadingNumbers, LeftOutPredictions) {
-        let Both { kept, slope, direct } = self;
+        let Both { kept, slope, direct, freely } = self;
+        let direct = freely.as_ref().map_or(direct, |freely| &freely.direct);
         let actions = pushed.map(|pushed| pushed.outcome.taken.model.actions(&kept.states));
         let shares = pushed.map(|pushed| pushed.shares(&kept.trajectories()));
         let taken = &pushed.map_or(slope, |pushed| &pushed.outcome).taken;
@@ -45,6 +65,7 @@ impl Both {
             slope: (&taken.left_out, actions.as_ref().unwrap_or(&taken.actions)),
             direct: (&direct.left_out, &direct.actions),
             direct_unit: direct.fit.model.unit,
+            freely: freely.as_ref(),
             shares: shares.as_deref(),
         };
         (ReadingNumbers::compared(&compared), (compared.errors(), compared.rows()))

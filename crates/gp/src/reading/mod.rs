@@ -9,7 +9,7 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-use crate::reading::numbers::ReadingNumbers;
+use crate::reading::numbers::{FreeRows, ReadingNumbers};
 use crate::report::identifiability::direction;
 use crate::rows::kept::Grouping;
 
@@ -41,6 +41,10 @@ const WELL_SEEN: f64 = 0.25;
 const DEMONSTRATIONS: usize = 5;
 /// Left-out error above which movements are unexplained.
 const UNEXPLAINED: f64 = 0.5;
+/// Smallest share of free rows. Fewer may be the ones that a constraint common to them deflected.
+const LEAST_FREE: f64 = 0.5;
+/// Largest share of deflections along the motion, in that of noise. Constraints deflect across the motion.
+const ACROSS: f64 = 0.3;
 /// Share of the slope policy's squared length that certainly counts as hidden.
 const HIDDEN: f64 = 0.08;
 
@@ -49,6 +53,7 @@ impl ReadingNumbers {
     pub fn reading(&self) -> Hypothesis {
         match () {
             () if self.grouping == Grouping::BlocksOfTime => Hypothesis::TooFew,
+            () if self.free.is_some() => Hypothesis::Constrained,
             () if self.gap <= SAME || self.shows_a_potential() => {
                 if self.seen() {
                     Hypothesis::Free
@@ -106,11 +111,21 @@ impl ReadingNumbers {
     /// Whether the returned policy is the slope GP's.
     pub fn takes_slope(&self, reading: Hypothesis) -> bool {
         match reading {
-            Hypothesis::Constrained => true,
+            Hypothesis::Constrained => self.free.is_none(),
             Hypothesis::Unexplained => self.a_s < self.a_d,
             Hypothesis::Free | Hypothesis::Ambiguous => self.shows_a_potential(),
             Hypothesis::TooFew => false,
         }
+    }
+
+    /// Whether constraints deflected the other rows from the direct GP of the free ones (R10): it predicts how fast they move along their
+    /// directions, and left-out movements at least as well as the slope GP does.
+    pub(crate) fn free_rows_explain_all(&self) -> bool {
+        let many = self.trajectories >= DEMONSTRATIONS && self.grouping == Grouping::Trajectories;
+        let across = ACROSS / self.least_seen.direction.len() as f64;
+        let explains =
+            |free: FreeRows| (LEAST_FREE..1.0).contains(&free.share) && free.misfit <= 1.0 && free.along <= across;
+        many && self.free.is_some_and(explains) && self.a_d <= self.a_s
     }
 
     /// Whether movement is free and both policies are nearly equal, so that nothing can have pushed either.
@@ -121,6 +136,11 @@ impl ReadingNumbers {
     /// Whether nothing was hidden and the slope GP is nevertheless far better.
     pub(crate) fn shows_a_potential(&self) -> bool {
         self.gap > SAME && self.trajectories >= DEMONSTRATIONS && self.direction_tells() && !self.hides()
+    }
+
+    /// Expected error of the direct policy learnt from free rows.
+    pub(crate) fn error_of_free_rows(&self) -> f64 {
+        self.p_d.max(self.a_d)
     }
 
     /// The reading as a text for the user. `expected_nupe` is the slope policy's.
@@ -140,6 +160,10 @@ impl ReadingNumbers {
             ),
             Hypothesis::Free => format!(
                 "Nothing in these demonstrations points to a hidden constraint: left-out movements are predicted from the state alone with an error of {p_d} of their variance, and the policy that allows for constraints agrees within {gap}. The direct policy is used. A constraint that is the same in every demonstration cannot be seen in data."
+            ),
+            Hypothesis::Constrained if self.free.is_some() => format!(
+                "Constraints deflected only some of the movements: what the others show without constraints also predicts how far these were allowed to go (squared error {a_d}, and {a_s} from directions alone). The direct policy, learnt from the {} of the samples that move freely, is used. Expected error {:.1e}.",
+                Percent(self.free.map_or(1.0, |free| free.share)), self.error_of_free_rows()
             ),
             Hypothesis::Constrained => format!(
                 "Constraints hid part of the policy, and they differed: the direction in which a movement was allowed to go predicts its speed far better than the state alone (squared error {a_s} against {a_d}). The slope policy is used; about {hidden} of its length was hidden from view. Expected error {expected_nupe:.1e}."

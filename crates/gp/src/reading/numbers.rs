@@ -3,6 +3,7 @@ use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
 
 use crate::Rows;
+use crate::direct::free_rows::OfFreeRows;
 use crate::direct::model::DirectModel;
 use crate::left_out::LeftOutPredictions;
 use crate::left_out::comparison::{NEGLIGIBLE, difference, log_ratio, t_of_mean};
@@ -40,6 +41,23 @@ pub struct ReadingNumbers {
     pub trajectories: usize,
     /// The unit of leave-one-out.
     pub grouping: Grouping,
+    /// If only some rows were constrained: the numbers of the direct GP are then those of the one learnt from the others (R10).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub free: Option<FreeRows>,
+}
+
+/// The rows that move freely if constraints deflected the others (R10).
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FreeRows {
+    /// Their share of all rows.
+    pub share: f64,
+    /// Largest distance of a free velocity from its prediction, in units of the state per second.
+    pub within: f64,
+    /// Mean squared left-out error along the motion of deflected rows, in squares of `within`.
+    pub misfit: f64,
+    /// Share of the deflected rows' squared left-out errors along their motion: 0 for orthogonal constraints, 1/d for noise.
+    pub along: f64,
 }
 
 /// Held-out errors of a trajectory: weighted sums of squares along the direction of motion (R7), in squared
@@ -84,6 +102,8 @@ pub(crate) struct Compared<'a> {
     pub(crate) direct: (&'a LeftOutPredictions, &'a DMatrix<f64>),
     /// ū.
     pub(crate) direct_unit: f64,
+    /// The free rows from which the direct GP was learnt, if not from all.
+    pub(crate) freely: Option<&'a OfFreeRows>,
     /// The slope GP's error on each group, as a share of the quantity to predict, if it learnt from other rows than `data`.
     pub(crate) shares: Option<&'a [f64]>,
 }
@@ -121,6 +141,21 @@ impl Compared<'_> {
         self.speeds.iter().zip(self.indices).enumerate().map(row).collect()
     }
 
+    /// (R10).
+    fn free(&self) -> Option<FreeRows> {
+        let &OfFreeRows { ref free, within, .. } = self.freely?;
+        let deflected = || (0..free.len()).filter(|&row| !free[row]);
+        let count = deflected().count();
+        let along: f64 = deflected().map(|row| self.direct_residual(row).powi(2)).sum();
+        let whole: f64 = deflected().map(|row| self.direct.0.residuals.row(row).norm_squared()).sum();
+        Some(FreeRows {
+            share: 1.0 - count as f64 / free.len() as f64,
+            within,
+            misfit: along / count.max(1) as f64 / within.powi(2),
+            along: along / (self.direct_unit.powi(2) * whole),
+        })
+    }
+
     /// e^s of (R7).
     fn slope_residual(&self, row: usize) -> f64 {
         self.data.speed * self.slope.0.residuals[(row, 0)]
@@ -149,6 +184,7 @@ impl ReadingNumbers {
             slope: (slope_left_out, &slope.actions(rows.states())),
             direct: (direct_left_out, &direct.moving_actions(rows.states().as_view())),
             direct_unit: direct.unit,
+            freely: None,
             shares: None,
         })
     }
@@ -176,6 +212,7 @@ impl ReadingNumbers {
             hidden: (1.0 - seen / slope.1.norm_squared()).max(0.0),
             trajectories: data.groups.len(),
             grouping,
+            free: compared.free(),
         }
     }
 }

@@ -37,7 +37,7 @@ impl Tables<'_> {
             Learnt::Slope(fit) => LearnerTables::slope(model, fit),
             Learnt::Direct(fit) => LearnerTables::direct(model, fit),
             Learnt::Auto(both) if both.takes_slope() => LearnerTables::slope(model, both.slope()),
-            Learnt::Auto(both) => LearnerTables::direct(model, both.direct()),
+            Learnt::Auto(both) => LearnerTables::direct(model, both.direct_of_free_rows()),
         };
         let scale = DVector::from_vec(model.inputs().map(|channel| channel.scale).collect());
         let (bounds, per_unit) = (model.bounds(), model.potential_factor());

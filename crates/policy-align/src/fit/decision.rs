@@ -1,7 +1,7 @@
 //! The decisions of a fit, with their reasons.
 
-use gp::{AutoFit, Hypothesis, RowsDropped};
-use prepare::numbers::squared_error;
+use gp::{AutoFit, FreeRows, Hypothesis, RowsDropped};
+use prepare::numbers::{percent, squared_error};
 
 use super::digest::Digest;
 use super::options::{FitOptions, LearnerChoice};
@@ -74,7 +74,7 @@ pub(super) fn learner_decision(options: &FitOptions, readings: &AutoFit) -> Deci
                 Some(reading) => format!("reading given: {reading:?}").to_lowercase(),
                 None => format!(
                     "{}: error relative to the motion {} with direction, {} without",
-                    found(reading),
+                    found(reading, numbers.free),
                     squared_error(numbers.a_s),
                     squared_error(numbers.a_d)
                 ),
@@ -85,12 +85,16 @@ pub(super) fn learner_decision(options: &FitOptions, readings: &AutoFit) -> Deci
 }
 
 /// Whether the data show constraints, in words.
-fn found(reading: Hypothesis) -> &'static str {
-    match reading {
-        Hypothesis::Free => "no constraints detected",
-        Hypothesis::Constrained => "constraints detected",
-        Hypothesis::Ambiguous => "free or constrained, both readings fit",
-        Hypothesis::Unexplained => "neither reading fits",
-        Hypothesis::TooFew => "too few movements to detect constraints",
-    }
+fn found(reading: Hypothesis, free: Option<FreeRows>) -> String {
+    let found = match (reading, free) {
+        (_, Some(free)) => {
+            return format!("constraints detected, but {} of the samples move freely", percent(free.share));
+        }
+        (Hypothesis::Free, _) => "no constraints detected",
+        (Hypothesis::Constrained, _) => "constraints detected",
+        (Hypothesis::Ambiguous, _) => "free or constrained, both readings fit",
+        (Hypothesis::Unexplained, _) => "neither reading fits",
+        (Hypothesis::TooFew, _) => "too few movements to detect constraints",
+    };
+    found.to_owned()
 }

@@ -50,16 +50,16 @@ pub(super) fn of_slope(readings: &AutoFit, rows: &Rows, limits: Limits) -> Optio
     disagreement(readings.slope(), rows, &halves, &learn)
 }
 
-/// As [`of_slope`], for direct policies.
+/// As [`of_slope`], for direct policies; from free rows if the whole fit is.
 pub(super) fn of_direct(readings: &AutoFit, rows: &Rows, limits: Limits) -> Option<f64> {
     let gp = DirectGp {
-        families: vec![readings.direct().family()],
+        families: vec![readings.direct_of_free_rows().family()],
         max_rows: limits.max_rows / 2,
         hyper_rows: limits.max_rows / 4,
         ..DirectGp::default()
     };
-    let learn = |rows: &Rows| gp.fit(rows, &mut ChaCha8Rng::seed_from_u64(limits.seed));
-    of_means((readings, readings.direct()), rows, &learn)
+    let learn = |rows: &Rows| gp.fit(&readings.free_rows(rows), &mut ChaCha8Rng::seed_from_u64(limits.seed));
+    of_means((readings, readings.direct_of_free_rows()), rows, &learn)
 }
 
 /// Number of samples of the movement if there is only one.

@@ -80,6 +80,7 @@ impl FitOptions {
             },
             direct: DirectGp { max_rows, hyper_rows, ..DirectGp::default() },
             reading,
+            free_rows: self.learner != LearnerChoice::Direct,
         }
     }
 

@@ -24,6 +24,8 @@ pub(super) fn learnt(
     let report = readings.slope().report();
     // With a robot, the joints' own units are those in which its links keep constraints.
     if chosen
+        // Free motion shows the policy in any unit.
+        || readings.numbers().free.is_some()
         || report.task_space.is_some()
         || !constrained
         || report.is_nearly_exact()

@@ -1,4 +1,4 @@
-//! A wall that all movements reach, and rotating constraints.
+//! A wall that all movements reach, rotating constraints, and constraints on a few movements.
 
 use nalgebra::{DMatrix, DVector};
 use rand::{RngExt, SeedableRng};
@@ -64,6 +64,22 @@ fn turning(seed: u64) -> Case {
     of_movements(&["q1", "q2", "q3", "q4", "q5", "q6"], &movements)
 }
 
+/// A policy that rotates about z; only the first movements are constrained.
+fn few_constrained(constrained: usize, seed: u64) -> Case {
+    let mut rng = ChaCha8Rng::seed_from_u64(seed);
+    let policy = |x: &DVector<f64>| DVector::from_vec(vec![-x[0] - 2.0 * x[1], 2.0 * x[0] - x[1], -0.5 * x[2]]);
+    let movements: Vec<[DMatrix<f64>; 3]> = (0..COUNT + FRESH)
+        .map(|at| {
+            let start = DVector::from_fn(3, |_, _| rng.random_range(-1.5..1.5));
+            let n = normal(3, &mut rng);
+            let robot =
+                move |_: f64, x: &DVector<f64>| if at < constrained { pressed(&n, 0.0, &policy(x)) } else { policy(x) };
+            movement(start, &(Box::new(move |_, x| policy(x)), Box::new(robot)))
+        })
+        .collect();
+    of_movements(&["x", "y", "z"], &movements)
+}
+
 /// All cases.
 pub(crate) fn all() -> Vec<Named> {
     vec![
@@ -71,5 +87,7 @@ pub(crate) fn all() -> Vec<Named> {
         case("a wall in the way of all, 2-D, 2 % noise", |s| noisy(walled(2, s), 0.02, s)),
         case("a wall in the way of all, 3-D, 1 % noise", |s| noisy(walled(3, s), 0.01, s)),
         case("constraints that turn, 6-D, 1 % noise", |s| noisy(turning(s), 0.01, s)),
+        case("one of forty movements constrained, 3-D", |s| few_constrained(1, s)),
+        case("three of forty movements constrained, 3-D, 2 % noise", |s| noisy(few_constrained(3, s), 0.02, s)),
     ]
 }
