@@ -27,8 +27,12 @@ const FACTORS: [(f64, &str); 3] =
 ///
 /// `scales`: the factor of each channel, (n).
 pub(crate) fn other_units(episodes: &[Episode], scales: &DVector<f64>) -> Option<Finding> {
-    let each: Vec<f64> = episodes.iter().map(|episode| size(episode, scales)).collect();
-    let mut sizes: Vec<f64> = each.iter().copied().filter(|&size| size > 0.0).collect();
+    // An episode that was cut is as large as its largest piece. Pieces have its name.
+    let name = |episode: &Episode| episode.name.split(PIECE).next().unwrap_or("").to_owned();
+    let recorded = episodes.chunk_by(|a, b| name(a) == name(b));
+    let largest = |pieces: &[Episode]| pieces.iter().map(|piece| size(piece, scales)).fold(0.0, f64::max);
+    let each: Vec<(String, f64)> = recorded.map(|pieces| (name(&pieces[0]), largest(pieces))).collect();
+    let mut sizes: Vec<f64> = each.iter().map(|of| of.1).filter(|&size| size > 0.0).collect();
     sizes.sort_by(f64::total_cmp);
     if sizes.len() < FEWEST {
         return None;
@@ -46,11 +50,8 @@ pub(crate) fn other_units(episodes: &[Episode], scales: &DVector<f64>) -> Option
     if !larger && small.len() < FEWEST_SMALLER {
         return None;
     }
-    let is_odd = |&(_, &size): &(&Episode, &f64)| size > 0.0 && (size >= large[0]) == larger;
-    // Pieces of a split episode have its name.
-    let odd = episodes.iter().zip(&each).filter(is_odd);
-    let mut odd: Vec<&str> = odd.map(|(of, _)| of.name.split(PIECE).next().unwrap_or("")).collect();
-    odd.dedup();
+    let is_odd = |size: f64| size > 0.0 && (size >= large[0]) == larger;
+    let odd: Vec<&str> = each.iter().filter(|of| is_odd(of.1)).map(|(name, _)| name.as_str()).collect();
     let mut names: Vec<&str> = odd.iter().take(NAMED).copied().collect();
     let held = names.join(",");
     let more = format!("and {} more", odd.len().saturating_sub(NAMED));
@@ -140,6 +141,24 @@ mod tests {
                 prop_assert!(few || factor == 57.2958 || factor == 100.0, "{factor} {odd:?}");
             }
         }
+    }
+
+    /// Cut where something jumped, an episode may rest in one piece and move in another; it counts once, as large as it moved.
+    #[test]
+    fn pieces_count_as_one_episode() {
+        let cut = |factors: &[f64], pieces: usize| -> Vec<Episode> {
+            let episodes = episodes(factors, 1.0);
+            let piece = |of: &Episode, k: usize| Episode {
+                name: format!("{}{PIECE}{k}", of.name),
+                positions: &of.positions * if k == 0 { 1.0 } else { 1e-3 },
+                ..of.clone()
+            };
+            episodes.iter().flat_map(|of| (0..pieces).map(|k| piece(of, k)).collect::<Vec<_>>()).collect()
+        };
+        let found = |factors: &[f64]| other_units(&cut(factors, 3), &DVector::repeat(2, 1.0));
+        assert_eq!(found(&[1.0; 8]), None);
+        let found = found(&[1.0, 1.0, 1.0, 1000.0, 1.0, 1.0]).expect("a finding");
+        assert!(found.what.starts_with("1 episode (take 3) is ") && found.what.contains("the 5 others"), "{found:?}");
     }
 
     #[test]
