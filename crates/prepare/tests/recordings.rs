@@ -686,6 +686,30 @@ proptest! {
         prop_assert_eq!(prepared.velocities == VelocitySource::Positions, samples > 0, "{:?}", prepared.velocities);
     }
 
+    /// Beside noisy positions, late velocities are shifted: each sample has the velocity that it had before the delay.
+    #[test]
+    fn late_velocities_beside_noisy_positions_are_shifted(rate in 1.7..2.0f64, noise in 0.034..0.038f64) {
+        let samples = 3;
+        let mut late = moving(&["x", "y"], |k, t| {
+            let of = |t: f64| [(rate * t + k as f64).sin(), (0.7 * rate * t - k as f64).cos()];
+            let u = [rate * (rate * t + k as f64).cos(), -0.7 * rate * (0.7 * rate * t - k as f64).sin()];
+            let off = |axis: f64| noise * ((1e4 * (k as f64 + 7.0 * axis) + 1e3 * t).sin() * 43_758.545_3).fract();
+            (DVector::from_column_slice(&of(t)) + DVector::from_column_slice(&[off(1.0), off(2.0)]), DVector::from_column_slice(&u))
+        });
+        let on_time: Vec<DMatrix<f64>> = late.episodes.iter().map(|episode| episode.velocities.clone().unwrap()).collect();
+        for (episode, u) in late.episodes.iter_mut().zip(&on_time) {
+            episode.velocities = Some(DMatrix::from_fn(2, SAMPLES, |axis, i| u[(axis, i.saturating_sub(samples))]));
+        }
+        let prepared = self::prepared(&late);
+        prop_assert!(says(&prepared, &format!("{} s later", prepare_numbers(STEP * samples as f64))), "{:?}", prepared.findings);
+        prop_assert_eq!(verdict(&prepared, "than the steps"), Verdict::Good);
+        let scale = prepared.state.iter().map(|channel| channel.scale).next().unwrap();
+        for (movement, u) in prepared.demonstrations.trajectories().iter().zip(&on_time) {
+            prop_assert_eq!(movement.n_samples(), SAMPLES - samples);
+            prop_assert_eq!(movement.velocities().unwrap(), &(u.columns(0, SAMPLES - samples) * scale));
+        }
+    }
+
     /// q and −q are one orientation: recordings with sign changes give the same result as without.
     #[test]
     fn signs_of_quaternions(flips in prop::collection::vec((1..12usize, 0..SAMPLES), 1..6)) {

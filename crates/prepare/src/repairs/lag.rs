@@ -1,9 +1,10 @@
-//! Detects velocities that were recorded later, or earlier, than the positions, and replaces late ones.
+//! Detects velocities that were recorded later, or earlier, than the positions, and replaces or shifts late ones.
 
 use motion::{Episode, Verdict};
+use nalgebra::DMatrix;
 
 use crate::notes::Notes;
-use crate::numbers::{percent, short};
+use crate::numbers::{counted, percent, short};
 use crate::samples::noise::Noise;
 
 /// Maximum number of steps to compare, evenly spaced.
@@ -14,8 +15,10 @@ const SHARE: usize = 4;
 /// Integration rules place a velocity up to half a sample from the middle of its step; this number of half samples is a
 /// lag.
 const LEAST: isize = 3;
-/// Maximum mismatch of the shifted velocities with the steps, as a share of the mismatch as recorded.
+/// Maximum mismatch of the shifted velocities with the steps, as a share of the mismatch as recorded, both without noise …
 const BETTER: f64 = 0.3;
+/// … or with noise, as a multiple of what the positions' noise makes, whose estimate may be a tenth too small.
+const NOISE: f64 = 1.25;
 /// A shift must reduce Σ mismatch by this multiple of the noise variance of a step's velocity along one axis. Without a lag, the
 /// correlation of noise with the change of velocities reduces it by about one such variance.
 const SIGNIFICANT: f64 = 50.0;
@@ -24,22 +27,25 @@ const KEPT: f64 = 0.9;
 /// Share of the squared velocities that a lag may change before the policy is in doubt.
 const HARMLESS: f64 = 0.15;
 
-/// Reports the shift that makes velocities agree with the steps. Returns whether the positions replace them: if the velocities are late
-/// and the noise of the positions changes the steps less than the shift does. Early velocities may be commands.
-pub(crate) fn are_replaced(episodes: &[Episode], noise: &Noise, notes: &mut Notes) -> bool {
+/// Reports the shift that makes velocities agree with the steps, and repairs late ones. Returns whether the positions replace them: if
+/// the noise of the positions changes the steps less than the shift does. Otherwise they are shifted. Early velocities may be commands.
+pub(crate) fn repaired_by_positions(episodes: &mut [Episode], noise: &Noise, notes: &mut Notes) -> bool {
     let Some(lag) = lag(episodes, noise) else { return false };
     let late = lag.seconds > 0.0;
     let replaced = late && noise.step_share < lag.changed;
-    let next = match (replaced, late) {
-        (true, _) => "they are taken from the positions; shift these columns to use them",
-        (false, true) => "shift these columns, or --integration displacement takes velocities from the positions",
-        (false, false) => {
+    let samples = lag.half_samples.unsigned_abs().div_ceil(2);
+    let shifted = late && !replaced && episodes.iter().all(|episode| episode.n_samples() > samples + 1);
+    let next = match (replaced, shifted, late) {
+        (true, ..) => "they are taken from the positions; shift these columns to use them",
+        (_, true, _) => "they are shifted; --integration displacement takes velocities from the positions instead",
+        (_, _, true) => "shift these columns, or --integration displacement takes velocities from the positions",
+        (_, _, false) => {
             "correct if they are commands that the robot follows with this delay; otherwise shift them, or --integration displacement takes velocities from the positions"
         }
     };
     let (seconds, when) = (short(lag.seconds.abs()), if late { "later" } else { "earlier" });
     notes.found(
-        if lag.changed > HARMLESS && !replaced { Verdict::Doubtful } else { Verdict::Good },
+        if lag.changed > HARMLESS && !replaced && !shifted { Verdict::Doubtful } else { Verdict::Good },
         format!(
             "velocities were recorded {seconds} s {when} than the steps that they match (this changes {} of them)",
             percent(lag.changed)
@@ -50,10 +56,29 @@ pub(crate) fn are_replaced(episodes: &[Episode], noise: &Noise, notes: &mut Note
         let why = format!("those recorded are {seconds} s late, and noise of positions is smaller than the difference");
         notes.decided("velocities", "from positions", why, "--integration");
     }
+    if shifted {
+        let why = format!("they match the steps there; so the last {} have none", counted(samples, "sample"));
+        notes.decided("shift of velocities", format!("{seconds} s sooner"), why, "--integration");
+        for episode in episodes {
+            *episode = sooner(episode, lag.half_samples.unsigned_abs());
+        }
+    }
     replaced
 }
 
+/// The episode with each sample's velocity taken from that many half samples later; the last samples, which have none, are left out.
+fn sooner(episode: &Episode, half_samples: usize) -> Episode {
+    let left = episode.n_samples() - half_samples.div_ceil(2);
+    let moved = |velocities: &DMatrix<f64>| {
+        let from = |first: usize| velocities.columns(first, left);
+        (from(half_samples / 2) + from(half_samples.div_ceil(2))) * 0.5
+    };
+    Episode { velocities: episode.velocities.as_ref().map(moved), ..episode.part(0, left) }
+}
+
 struct Lag {
+    /// Positive if velocities are late.
+    half_samples: isize,
     /// Positive if velocities are late.
     seconds: f64,
     /// The part of Σ|difference|²/Σ|step|² that the shift removes.
@@ -101,10 +126,15 @@ fn lag(episodes: &[Episode], noise: &Noise) -> Option<Lag> {
     let of_noise = compared.iter().map(|(episode, step)| variance / episode.times.seconds(*step, *step + 1).powi(2));
     let floor = of_noise.sum::<f64>().min(least);
     let of_an_axis = floor / (compared.len() * episodes[0].positions.nrows()) as f64;
-    let is_explained = least - floor <= BETTER * (recorded - floor) && recorded - least >= SIGNIFICANT * of_an_axis;
+    let only_noise_remains = least - floor <= BETTER * (recorded - floor) || least <= NOISE * floor;
+    let is_explained = only_noise_remains && recorded - least >= SIGNIFICANT * of_an_axis;
     let step = episodes.iter().find_map(|episode| episode.times.median_step())?;
     let is_lag = best.shift.abs() >= LEAST && best.shift.abs() < halves && is_explained;
-    is_lag.then(|| Lag { seconds: best.shift as f64 / 2.0 * step, changed: (recorded - least) / (power - floor) })
+    is_lag.then(|| Lag {
+        half_samples: best.shift,
+        seconds: best.shift as f64 / 2.0 * step,
+        changed: (recorded - least) / (power - floor),
+    })
 }
 
 /// The sum of all but the largest mismatches: if a constraint ends within a step, the step lies between two velocities.
