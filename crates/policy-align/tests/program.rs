@@ -418,6 +418,52 @@ fn the_end_of_constraints_is_named() {
     assert!(long.out.contains("satisfied exactly\n"), "{}{}", long.out, long.err);
 }
 
+/// Sixteen movements that turn towards the origin; only the last is constrained, to a plane across y = z.
+fn write_one_constrained(file: &std::path::Path) {
+    let mut text = "episode,t,x,y,z,vx,vy,vz\n".to_owned();
+    for episode in 0..16 {
+        let angle = 2.4 * f64::from(episode);
+        let mut x: [f64; 3] = [1.2 * angle.cos(), 1.2 * angle.sin(), (1.7 * angle).sin()];
+        for i in 0..30 {
+            let mut u = [-x[0] - 2.0 * x[1], 2.0 * x[0] - x[1], -0.5 * x[2]];
+            if episode == 15 {
+                let across = (u[1] - u[2]) / 2.0;
+                u = [u[0], u[1] - across, u[2] + across];
+            }
+            let numbers = x.iter().chain(&u).map(f64::to_string).collect::<Vec<_>>().join(",");
+            text += &format!("{episode},{:.2},{numbers}\n", 0.05 * f64::from(i));
+            for (x, u) in x.iter_mut().zip(u) {
+                *x += 0.05 * u;
+            }
+        }
+    }
+    std::fs::write(file, text).unwrap();
+}
+
+/// Free movements show the policy; the one that a constraint turned aside is named before them, though it is the last.
+#[test]
+fn one_constrained_movement_among_free_ones_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    write_one_constrained(&folder.path().join("one.csv"));
+    let fit = run_in(folder.path(), "fit one.csv -o one.json --no-report");
+    assert_eq!(fit.code, Some(0), "{}", fit.err);
+    assert!(
+        words(&fit.out).contains("direct GP (constraints detected, but 94 % of the samples move freely"),
+        "{}",
+        fit.out
+    );
+    assert!(words(&run_in(folder.path(), "info one.json").out).contains("94 % of the samples move freely"));
+    let named = run_in(folder.path(), "constraints one.json one.csv").out;
+    assert!(named.contains("1 with a constraint, 15 without any"), "{named}");
+    assert!(named.lines().nth(1).is_some_and(|line| line.starts_with("15 ")), "{named}");
+    let at = run_in(folder.path(), "predict one.json --at 0.5,0.3,0.2 --json").out;
+    let at: Value = serde_json::from_str(&at).unwrap();
+    for (axis, policy) in [-1.1, 0.7, -0.1].into_iter().enumerate() {
+        let action = at["predictions"][0]["action"][axis].as_f64().unwrap();
+        assert!((action - policy).abs() < 1e-6, "{at}");
+    }
+}
+
 #[test]
 fn exported_roll_outs_equal_those_of_rollout() {
     assert_eq!(

@@ -2,6 +2,7 @@
 
 use gp::Hypothesis;
 use policy_align::{Learnt, Model, Verdict};
+use prepare::numbers::percent;
 
 use crate::cli::given::value_word;
 use crate::cli::lines::{counted, short};
@@ -38,7 +39,8 @@ pub(crate) fn learner(model: &Model) -> String {
                 Hypothesis::TooFew => "too few movements".to_owned(),
                 reading => format!("{reading:?}").to_lowercase(),
             };
-            format!("{taken}, chosen automatically (reading: {reading})")
+            let free = both.numbers().free.map(|free| format!("; {} of the samples move freely", percent(free.share)));
+            format!("{taken}, chosen automatically (reading: {reading}{})", free.unwrap_or_default())
         }
     }
 }

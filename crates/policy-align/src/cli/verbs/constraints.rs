@@ -118,7 +118,7 @@ impl Constraints {
     }
 }
 
-/// The number of stretches of each kind, and the first ones.
+/// The number of stretches of each kind, and the first ones; if not all are listed, those with a constraint come first.
 fn told(model: &Model, found: &[ConstraintStretch]) -> Lines {
     let mut lines = Lines::default();
     let count = |acting| found.iter().filter(|stretch| stretch.acting == acting).count();
@@ -130,7 +130,11 @@ fn told(model: &Model, found: &[ConstraintStretch]) -> Lines {
     ];
     let others = others.iter().filter(|(count, _)| *count > 0).map(|(count, what)| format!(", {count} {what}"));
     lines.add("stretches", &format!("{constraints} with a constraint{}", others.collect::<String>()));
-    for stretch in found.iter().take(LISTED) {
+    let mut listed: Vec<&ConstraintStretch> = found.iter().collect();
+    if listed.len() > LISTED {
+        listed.sort_by_key(|stretch| stretch.acting != Acting::Constraint);
+    }
+    for stretch in listed.into_iter().take(LISTED) {
         let (from, until) = stretch.seconds;
         let when = format!("{from:.2}–{until:.2} s");
         lines.add(&format!("{:.12}", stretch.episode), &format!("{when}  {}", line(stretch, &model.state)));
