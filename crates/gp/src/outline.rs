@@ -100,7 +100,7 @@ impl<P> Outline<P> {
 
     /// Whether these rows explain the share `least` of the prior variance of each state. `b` are covariances (S, k c) of c components per
     /// state; `unit` multiplies their squares. An infinite variance is never counted as explained.
-    pub(crate) fn told(
+    pub(crate) fn explains(
         &self,
         factor: &InverseOfLower,
         mut b: Panel,

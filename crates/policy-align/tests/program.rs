@@ -420,6 +420,7 @@ fn the_end_of_constraints_is_named() {
 
 /// Sixteen movements that turn towards the origin; only the last is constrained, to a plane across y = z.
 fn write_one_constrained(file: &std::path::Path) {
+    use std::fmt::Write as _;
     let mut text = "episode,t,x,y,z,vx,vy,vz\n".to_owned();
     for episode in 0..16 {
         let angle = 2.4 * f64::from(episode);
@@ -431,7 +432,7 @@ fn write_one_constrained(file: &std::path::Path) {
                 u = [u[0], u[1] - across, u[2] + across];
             }
             let numbers = x.iter().chain(&u).map(f64::to_string).collect::<Vec<_>>().join(",");
-            text += &format!("{episode},{:.2},{numbers}\n", 0.05 * f64::from(i));
+            writeln!(text, "{episode},{:.2},{numbers}", 0.05 * f64::from(i)).unwrap();
             for (x, u) in x.iter_mut().zip(u) {
                 *x += 0.05 * u;
             }

@@ -140,7 +140,7 @@ impl SlopeModel {
             };
             let prior: Vec<f64> = states.column_iter().map(prior).collect();
             let covariances = part.policy_with_rows_at(&states.column_iter().collect::<Vec<_>>());
-            self.outline.told(factor, covariances, &prior, (speed.powi(2), least))
+            self.outline.explains(factor, covariances, &prior, (speed.powi(2), least))
         };
         supported(states, dim, least, some, |states| self.variances(states))
     }

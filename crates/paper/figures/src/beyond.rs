@@ -10,7 +10,7 @@ use nalgebra::DVector;
 use plot::{Field, Layer, Picture, Plane};
 use serde::{Deserialize, Serialize};
 
-use crate::Who;
+use crate::Agent;
 use crate::sound::{Sound, field, some};
 use crate::state_plane::{Arrow, actions, compared, on_grid, state_plane};
 use crate::{Drawing, Sources, demonstrated, rounded};
@@ -102,8 +102,9 @@ pub(crate) fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
     let fields: Fields = sources.document("beyond_fields")?;
     let movements = || fields.movements.iter().map(|movement| (&movement[..], true));
     let plane = |title: &str, layers| state_plane(title, EXTENT, layers, SIZE);
-    let learnt =
-        |title: &str, learnt: &[Arrow], who: Who| plane(title, compared(&fields.truth, learnt, who, ARROW_SECONDS));
+    let learnt = |title: &str, learnt: &[Arrow], agent: Agent| {
+        plane(title, compared(&fields.truth, learnt, agent, ARROW_SECONDS))
+    };
     let range = range_of([&fields.expected, &fields.error]);
     let sure = |title: &str, values: &Field| {
         let name = "log₁₀ (1/s)".to_owned();
@@ -111,17 +112,17 @@ pub(crate) fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
         let inside = |(x, y): &(f64, f64)| x.abs() <= EXTENT && y.abs() <= EXTENT;
         let ways = movements().map(|(points, _)| Layer::Path {
             points: points.iter().copied().filter(inside).collect(),
-            stroke: Who::Demonstration.stroke(1.4),
+            stroke: Agent::Demonstration.stroke(1.4),
             label: None,
         });
         state_plane(title, EXTENT, std::iter::once(colors).chain(ways).collect(), SIZE_WITH_SCALE)
     };
     let panels: [Plane; 7] = [
         plane("(a) Ten constrained movements", demonstrated::layers(&fields.contours, movements(), 1.6)),
-        learnt("(b) Naive", &fields.naive, Who::Naive),
-        learnt("(c) PolicyAlign", &fields.policy_align, Who::PolicyAlign),
-        learnt("(d) Direct GP", &fields.direct_gp, Who::DirectGp),
-        learnt("(e) Slope GP", &fields.slope_gp, Who::SlopeGp),
+        learnt("(b) Naive", &fields.naive, Agent::Naive),
+        learnt("(c) PolicyAlign", &fields.policy_align, Agent::PolicyAlign),
+        learnt("(d) Direct GP", &fields.direct_gp, Agent::DirectGp),
+        learnt("(e) Slope GP", &fields.slope_gp, Agent::SlopeGp),
         sure("(f) Slope GP: error it expects", &fields.expected),
         sure("(g) Slope GP: true error", &fields.error),
     ];

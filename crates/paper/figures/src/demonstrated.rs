@@ -2,7 +2,7 @@
 
 use plot::{Field, Layer};
 
-use crate::Who;
+use crate::Agent;
 
 /// Colour of movements that alignment leaves out: a light blue.
 const LEFT_OUT: &str = "#8fc1e3";
@@ -14,10 +14,10 @@ pub(super) fn layers<'m>(
     movements: impl Iterator<Item = (&'m [(f64, f64)], bool)>,
     width: f64,
 ) -> Vec<Layer> {
-    let color = Who::Demonstration.color();
+    let color = Agent::Demonstration.color();
     let movement = |(points, kept): (&[(f64, f64)], bool)| {
         let way = if kept {
-            Layer::Path { points: points.to_vec(), stroke: Who::Demonstration.stroke(width), label: None }
+            Layer::Path { points: points.to_vec(), stroke: Agent::Demonstration.stroke(width), label: None }
         } else {
             Layer::Crosses { points: points.to_vec(), color: LEFT_OUT }
         };

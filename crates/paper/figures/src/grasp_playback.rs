@@ -72,7 +72,7 @@ pub(crate) fn grasp_playback(seed: u64) -> anyhow::Result<GraspPlayback> {
         scene: scene(&grasp.scene),
         time_step: grasp.roll_out.time_step,
         constraints: Constraint::ALL.map(|constraint| choice(constraint.id(), constraint.label())).into(),
-        learners: LEARNERS.map(|(id, who)| choice(id, who.name())).into(),
+        learners: LEARNERS.map(|(id, agent)| choice(id, agent.name())).into(),
         starts: STARTS,
         movements: movements(&grasp, seed)?,
     })

@@ -1,6 +1,7 @@
 //! The paper's figures. A run computes documents: plain numbers, stored as `figures/*.json`. Figures are drawn only
 //! from documents and results, so that they can be redrawn without a run.
 
+mod agent;
 #[cfg(test)]
 mod beside_paper;
 mod beyond;
@@ -14,7 +15,6 @@ mod scene;
 mod sound;
 mod state_plane;
 pub mod view;
-mod who;
 mod words;
 
 use std::collections::BTreeMap;
@@ -31,10 +31,10 @@ use serde_json::Value;
 use sound::Sound;
 use words::{Words, words};
 
+use agent::Agent;
+pub use agent::color_of;
 use numbered::figure8::ALL_AROUND_DOCUMENT;
 pub use numbered::figure8::{Ends, ends_of_reaching};
-use who::Who;
-pub use who::color_of;
 
 /// Data that a run computes for the figures, from fixed data sets.
 pub struct Document {

@@ -10,11 +10,11 @@ use nalgebra::DMatrix;
 use plot::{Canvas, Mark, Picture, Thing};
 use serde::{Deserialize, Serialize};
 
-use crate::Who;
+use crate::Agent;
+use crate::agent::TRUTH;
 use crate::miniature::{Miniature, extent_of};
 use crate::sound::{Sound, as_many, some};
 use crate::state_plane::{Arrow, WIDTHS, actions, every_second};
-use crate::who::TRUTH;
 use crate::{Drawing, Sources, rounded};
 
 /// Starts of the movements are drawn from [−2, 2]². The picture shows slightly more, because movements leave that
@@ -96,10 +96,10 @@ pub(crate) fn overview(seed: u64) -> anyhow::Result<Overview> {
 }
 
 /// The title of a learner's panel.
-fn title(who: Who) -> &'static str {
-    match who {
-        Who::Naive => "Naive: averaging",
-        Who::SlopeGp => "Slope GP",
+fn title(agent: Agent) -> &'static str {
+    match agent {
+        Agent::Naive => "Naive: averaging",
+        Agent::SlopeGp => "Slope GP",
         _ => "PolicyAlign",
     }
 }
@@ -113,11 +113,13 @@ pub(crate) fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
         Miniature { corner: (GAP + f64::from(number - 1) * (SIDE + GAP), TOP), side: SIDE, extent }
     };
     let mut things = overview.shown(next());
-    for (who, learnt) in
-        [(Who::Naive, &overview.naive), (Who::PolicyAlign, &overview.policy_align), (Who::SlopeGp, &overview.slope_gp)]
-    {
+    for (agent, learnt) in [
+        (Agent::Naive, &overview.naive),
+        (Agent::PolicyAlign, &overview.policy_align),
+        (Agent::SlopeGp, &overview.slope_gp),
+    ] {
         if !learnt.is_empty() {
-            things.extend(overview.learnt(next(), who, learnt)?);
+            things.extend(overview.learnt(next(), agent, learnt)?);
         }
     }
     let width = f64::from(number) * (SIDE + GAP) + GAP;
@@ -132,30 +134,30 @@ fn words(at: (f64, f64), text: &str, size: u32, color: Option<&'static str>) -> 
 }
 
 /// A small picture with the goal, and words above and below it.
-fn panel(small: Miniature, [above, below]: [&str; 2], size: u32, who: Who, inside: Vec<Thing>) -> Vec<Thing> {
+fn panel(small: Miniature, [above, below]: [&str; 2], size: u32, agent: Agent, inside: Vec<Thing>) -> Vec<Thing> {
     let middle = small.corner.0 + SIDE / 2.0;
-    let goal = small.mark((0.0, 0.0), Mark::Star, Who::Expert.color(), 8.0);
-    let title = words((middle, TOP - 12.0), above, 16, Some(who.color()));
-    let foot = words((middle, TOP + SIDE + 28.0), below, size, Some(who.color()));
+    let goal = small.mark((0.0, 0.0), Mark::Star, Agent::Expert.color(), 8.0);
+    let title = words((middle, TOP - 12.0), above, 16, Some(agent.color()));
+    let foot = words((middle, TOP + SIDE + 28.0), below, size, Some(agent.color()));
     inside.into_iter().chain([small.frame(), goal, title, foot]).collect()
 }
 
 impl Overview {
     /// The movements, with arrowheads at their ends.
     fn shown(&self, small: Miniature) -> Vec<Thing> {
-        let who = Who::Demonstration;
+        let agent = Agent::Demonstration;
         let movement = |Movement { points, .. }: &Movement| {
-            [small.path(points, who.stroke(1.4)), small.mark(points[0], Mark::Circle, who.color(), 2.4)]
+            [small.path(points, agent.stroke(1.4)), small.mark(points[0], Mark::Circle, agent.color(), 2.4)]
         };
         let heads = ends(&self.movements).into_iter();
-        let heads = heads.map(|(x, y, u, v)| small.arrow((x, y), (u, v), who.color(), 1.4));
+        let heads = heads.map(|(x, y, u, v)| small.arrow((x, y), (u, v), agent.color(), 1.4));
         let inside = self.movements.iter().flat_map(movement).chain(heads).collect();
         let above = format!("{} demonstrations", self.movements.len());
-        panel(small, [&above, "unknown constraints"], SMALL, who, inside)
+        panel(small, [&above, "unknown constraints"], SMALL, agent, inside)
     }
 
     /// A learnt policy over the true one, with its error.
-    fn learnt(&self, small: Miniature, who: Who, learnt: &[Arrow]) -> anyhow::Result<Vec<Thing>> {
+    fn learnt(&self, small: Miniature, agent: Agent, learnt: &[Arrow]) -> anyhow::Result<Vec<Thing>> {
         let error = error(&self.expert, learnt)?;
         let error = if error < 0.001 { "error < 0.001".to_owned() } else { format!("error {error:.2}") };
         let arrows = |arrows: &[Arrow], color, width| {
@@ -163,8 +165,8 @@ impl Overview {
             every_second(arrows).into_iter().map(drawn).collect::<Vec<_>>()
         };
         let mut inside = arrows(&self.expert, TRUTH, WIDTHS[0]);
-        inside.extend(arrows(learnt, who.color(), WIDTHS[1]));
-        Ok(panel(small, [title(who), &error], LARGE, who, inside))
+        inside.extend(arrows(learnt, agent.color(), WIDTHS[1]));
+        Ok(panel(small, [title(agent), &error], LARGE, agent, inside))
     }
 }
 

@@ -4,8 +4,8 @@ use motion::Policy;
 use nalgebra::{DVector, dvector};
 use plot::{Field, Layer, Plane, PlotError};
 
-use crate::who::TRUTH;
-use crate::{Who, rounded};
+use crate::agent::TRUTH;
+use crate::{Agent, rounded};
 
 /// (x₁, x₂, u₁, u₂).
 pub(super) type Arrow = (f64, f64, f64, f64);
@@ -55,7 +55,7 @@ pub(super) fn every_second(arrows: &[Arrow]) -> Vec<Arrow> {
 pub(super) const WIDTHS: [f64; 2] = [5.5, 2.0];
 
 /// The true actions, and over them a learner's; their length corresponds to `seconds` of movement.
-pub(super) fn compared(truth: &[Arrow], learnt: &[Arrow], who: Who, seconds: f64) -> Vec<Layer> {
+pub(super) fn compared(truth: &[Arrow], learnt: &[Arrow], agent: Agent, seconds: f64) -> Vec<Layer> {
     let layer = |arrows: &[Arrow], color, width| Layer::Arrows {
         arrows: every_second(arrows),
         color,
@@ -63,7 +63,7 @@ pub(super) fn compared(truth: &[Arrow], learnt: &[Arrow], who: Who, seconds: f64
         width,
         label: None,
     };
-    vec![layer(truth, TRUTH, WIDTHS[0]), layer(learnt, who.color(), WIDTHS[1])]
+    vec![layer(truth, TRUTH, WIDTHS[0]), layer(learnt, agent.color(), WIDTHS[1])]
 }
 
 #[cfg(test)]

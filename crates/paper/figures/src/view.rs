@@ -80,6 +80,6 @@ fn steps(rows: &Value) -> Value {
 /// The figures' colours, for the view's style sheet.
 pub fn colors() -> String {
     let things = [("ball", stage::BALL), ("table", stage::TABLE), ("plate", stage::PLATE)];
-    let all = things.into_iter().chain(LEARNERS.map(|(id, who)| (id, who.color())));
+    let all = things.into_iter().chain(LEARNERS.map(|(id, agent)| (id, agent.color())));
     all.map(|(name, color)| format!("--figure-{}:{color}", name.replace('_', "-"))).collect::<Vec<_>>().join(";")
 }

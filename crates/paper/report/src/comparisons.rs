@@ -44,10 +44,14 @@ impl<'a> Comparisons<'a> {
             let cells: Vec<_> =
                 found.filter_map(|entry| Some((entry.method, cell(&entry.row, entry.measure)?))).collect();
             let n = cells.iter().map(|(_, cell)| cell.values.len()).min()?;
-            cells.iter().any(|(who, _)| *who == Method::SlopeGp).then_some(ComparisonLine { comparison, n, cells })
+            cells.iter().any(|(method, _)| *method == Method::SlopeGp).then_some(ComparisonLine {
+                comparison,
+                n,
+                cells,
+            })
         };
         let lines: Vec<_> = experiment.comparisons.iter().filter_map(line).collect();
-        let takes_part = |who: &Method| lines.iter().any(|line| line.mean(*who).is_some());
+        let takes_part = |method: &Method| lines.iter().any(|line| line.mean(*method).is_some());
         let methods: Vec<_> = Method::ALL.into_iter().filter(takes_part).collect();
         (!lines.is_empty()).then_some(Comparisons { remark: experiment.comparisons_remark, methods, lines })
     }
@@ -59,7 +63,7 @@ impl<'a> Comparisons<'a> {
 
     /// The column headers.
     pub(crate) fn header(&self) -> Vec<&'static str> {
-        let learners = self.methods.iter().map(|who| who.label());
+        let learners = self.methods.iter().map(|method| method.label());
         let ratio = self.has_ratio().then_some("slope GP / PolicyAlign");
         ["learnt from", "error of", "n"].into_iter().chain(learners).chain(ratio).collect()
     }
@@ -72,8 +76,8 @@ impl<'a> Comparisons<'a> {
 
     fn row(&self, line: &ComparisonLine<'_>) -> Vec<String> {
         let measure = line.comparison.measure;
-        let least = self.methods.iter().filter_map(|who| line.mean(*who)).fold(f64::INFINITY, f64::min);
-        let mean = |who: &Method| match line.mean(*who) {
+        let least = self.methods.iter().filter_map(|method| line.mean(*method)).fold(f64::INFINITY, f64::min);
+        let mean = |method: &Method| match line.mean(*method) {
             None => NOTHING.to_owned(),
             Some(mean) if mean == least => format!("**{}**", shown_mean(mean)),
             Some(mean) => shown_mean(mean),
@@ -92,17 +96,21 @@ impl<'a> Comparisons<'a> {
         let mut ranked: Vec<(Method, usize)> = least.into_iter().collect();
         ranked.sort_by_key(|&(_, times)| std::cmp::Reverse(times));
         let mut text = String::new();
-        for (at, (who, times)) in ranked.iter().enumerate() {
-            let who = who.label();
+        for (at, (method, times)) in ranked.iter().enumerate() {
+            let method = method.label();
             let _ = match at {
-                0 => write!(text, "Of {} comparisons, {who} has the least error in {times}", self.lines.len()),
-                _ => write!(text, ", {who} in {times}"),
+                0 => write!(text, "Of {} comparisons, {method} has the least error in {times}", self.lines.len()),
+                _ => write!(text, ", {method} in {times}"),
             };
         }
         text.push('.');
-        for (who, name) in [(Method::Naive, "The naive learner"), (Method::ConstraintConsistent, "Radial basis")] {
-            let ahead: Vec<String> =
-                self.lines.iter().filter(|line| line.is_ahead_of_policy_align(who)).map(ComparisonLine::name).collect();
+        for (method, name) in [(Method::Naive, "The naive learner"), (Method::ConstraintConsistent, "Radial basis")] {
+            let ahead: Vec<String> = self
+                .lines
+                .iter()
+                .filter(|line| line.is_ahead_of_policy_align(method))
+                .map(ComparisonLine::name)
+                .collect();
             let named = if ahead.len() <= FEW { format!(": {}", ahead.join(", ")) } else { String::new() };
             if !ahead.is_empty() {
                 let _ = write!(text, " {name} errs less than PolicyAlign in {}{named}.", ahead.len());
@@ -118,22 +126,24 @@ impl<'a> Comparisons<'a> {
 
 impl ComparisonLine<'_> {
     /// The mean over the data sets that all learners share.
-    pub(crate) fn mean(&self, who: Method) -> Option<f64> {
-        let (_, cell) = self.cells.iter().find(|(other, _)| *other == who)?;
+    pub(crate) fn mean(&self, method: Method) -> Option<f64> {
+        let (_, cell) = self.cells.iter().find(|(other, _)| *other == method)?;
         let values: Vec<f64> = cell.values[..self.n].iter().flatten().copied().collect();
         (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
     }
 
     /// The learner with the smallest mean; "automatic" and "no trend" do not count as learners.
     pub(crate) fn least(&self) -> Method {
-        let means = self.cells.iter().filter(|(who, _)| !matches!(who, Method::AutoGp | Method::SlopeGpNoTrend));
-        let means = means.filter_map(|(who, _)| Some((*who, self.mean(*who)?)));
+        let means = self.cells.iter().filter(|(method, _)| !matches!(method, Method::AutoGp | Method::SlopeGpNoTrend));
+        let means = means.filter_map(|(method, _)| Some((*method, self.mean(*method)?)));
         let least = means.min_by(|(_, a), (_, b)| a.total_cmp(b));
-        least.map_or(Method::SlopeGp, |(who, _)| who)
+        least.map_or(Method::SlopeGp, |(method, _)| method)
     }
 
-    pub(crate) fn is_ahead_of_policy_align(&self, who: Method) -> bool {
-        self.mean(who).zip(self.mean(Method::PolicyAlign)).is_some_and(|(who, policy_align)| who < policy_align)
+    pub(crate) fn is_ahead_of_policy_align(&self, method: Method) -> bool {
+        self.mean(method)
+            .zip(self.mean(Method::PolicyAlign))
+            .is_some_and(|(method, policy_align)| method < policy_align)
     }
 
     /// The case and the error.

@@ -44,12 +44,13 @@ fn wins(all: &[(&Experiment, Comparisons<'_>)]) -> String {
     let line = |(experiment, comparisons): &(&Experiment, Comparisons<'_>)| {
         let count =
             |wanted: &dyn Fn(&ComparisonLine<'_>) -> bool| comparisons.lines.iter().filter(|line| wanted(line)).count();
-        let of_all =
-            [comparisons.lines.len()].into_iter().chain(winners.iter().map(|who| count(&|line| line.least() == *who)));
+        let of_all = [comparisons.lines.len()]
+            .into_iter()
+            .chain(winners.iter().map(|method| count(&|line| line.least() == *method)));
         let counts = of_all.chain([count(&|line| line.is_ahead_of_policy_align(Method::Naive))]);
         [experiment.title.to_owned()].into_iter().chain(counts.map(|count| count.to_string())).collect()
     };
-    let names = winners.iter().map(|who| who.label());
+    let names = winners.iter().map(|method| method.label());
     let header: Vec<&str> =
         ["experiment", "comparisons"].into_iter().chain(names).chain(["naive ahead of PolicyAlign"]).collect();
     markdown_table(&header, &all.iter().map(line).collect::<Vec<_>>())
@@ -63,7 +64,7 @@ pub fn on_new_movements(experiments: &[Experiment], results: &[ExperimentResult]
         let comparisons = Comparisons::of(experiment, results.iter().find(|result| result.id == id)?)?;
         let line =
             comparisons.lines.iter().find(|line| line.comparison.case == case && line.comparison.measure == measure)?;
-        let of = |who| line.mean(who).map(shown_mean);
+        let of = |method| line.mean(method).map(shown_mean);
         Some([of(Method::Naive)?, of(Method::PolicyAlign)?, of(Method::SlopeGp)?])
     };
     let fresh = errors("table1", "sinusoidal-100x100-medium", Measure::NupeFresh).map(|[naive, align, slope]| {
@@ -82,10 +83,10 @@ pub fn on_new_movements(experiments: &[Experiment], results: &[ExperimentResult]
 }
 
 /// The rows of a learner, each with its case.
-fn rows_of(result: &ExperimentResult, who: Method) -> impl Iterator<Item = (&str, &RowResult)> {
+fn rows_of(result: &ExperimentResult, method: Method) -> impl Iterator<Item = (&str, &RowResult)> {
     result.rows.iter().filter_map(move |row| {
         let (case, learner) = row.id.rsplit_once('/')?;
-        (learner == who.id()).then_some((case, row))
+        (learner == method.id()).then_some((case, row))
     })
 }
 
@@ -142,8 +143,8 @@ fn free(readings: &ExperimentResult) -> String {
 
 /// Expected over true error of every fit of the slope GP and the direct GP whose error is not negligible.
 fn expected(results: &Results) -> String {
-    let line = |(under, who): (Under, Method)| {
-        let rows = results.experiments.iter().flat_map(|result| rows_of(result, who));
+    let line = |(under, method): (Under, Method)| {
+        let rows = results.experiments.iter().flat_map(|result| rows_of(result, method));
         let mut ratios: Vec<f64> =
             rows.filter(|(case, _)| Under::of(case) == under).flat_map(|(_, row)| ratios(row)).collect();
         ratios.sort_by(f64::total_cmp);
@@ -152,10 +153,13 @@ fn expected(results: &Results) -> String {
             (ratios.len(), |at: usize| ratios.get(at).map_or("–".to_owned(), |ratio| format!("{ratio:.2}")));
         let [near, far] = [within(3.0), within(10.0)].map(|count| count.to_string());
         let range = [show(0), show(n / 2), show(n.saturating_sub(1))];
-        [who.label().to_owned(), under.name().to_owned(), n.to_string(), near, far].into_iter().chain(range).collect()
+        [method.label().to_owned(), under.name().to_owned(), n.to_string(), near, far]
+            .into_iter()
+            .chain(range)
+            .collect()
     };
-    let whom = [Method::SlopeGp, Method::SlopeGpNoTrend, Method::DirectGp];
-    let both = [Under::Varying, Under::NoneOrOne].into_iter().flat_map(|under| whom.map(|who| (under, who)));
+    let methods = [Method::SlopeGp, Method::SlopeGpNoTrend, Method::DirectGp];
+    let both = [Under::Varying, Under::NoneOrOne].into_iter().flat_map(|under| methods.map(|method| (under, method)));
     let lines: Vec<Vec<String>> = both.map(line).collect();
     let header = [
         "expected error / true error",
@@ -243,8 +247,8 @@ fn rotation(results: &Results) -> String {
     let mut seen = BTreeSet::new();
     let (mut there, mut not_there) = ([0; 2], [0; 2]);
     for result in &results.experiments {
-        for who in [Method::SlopeGp, Method::SlopeGpNoTrend] {
-            for (case, row) in rows_of(result, who) {
+        for method in [Method::SlopeGp, Method::SlopeGpNoTrend] {
+            for (case, row) in rows_of(result, method) {
                 // Rows that differ only in their test movements come from the same fits.
                 let fits: Vec<u64> = values(row, Measure::ExpectedNupe).iter().flatten().map(|v| v.to_bits()).collect();
                 let kind = case.rsplit_once('/').map_or(case, |(_, kind)| kind);

@@ -21,12 +21,12 @@ pub(crate) fn align(episodes: &mut [Episode], channels: &[Channel], repair: Repa
         }
         let flips = if repair == Repair::Auto { same_signs(episodes, first) } else { 0 };
         let names: Vec<&str> = channels[first..first + 4].iter().map(|channel| channel.name.as_str()).collect();
-        said(&names.join(", "), flips, notes);
+        report_signs(&names.join(", "), flips, notes);
         first += 4;
     }
 }
 
-fn said(names: &str, flips: usize, notes: &mut Notes) {
+fn report_signs(names: &str, flips: usize, notes: &mut Notes) {
     let repaired = if flips == 0 {
         String::new()
     } else {

@@ -111,7 +111,7 @@ impl DirectModel {
                 return vec![false; states.ncols()];
             };
             let prior: Vec<f64> = states.column_iter().map(|state| self.prior_variance(state)).collect();
-            self.outline.told(factor, part.with_rows(states), &prior, (unit.powi(2), least))
+            self.outline.explains(factor, part.with_rows(states), &prior, (unit.powi(2), least))
         };
         supported(states, 1, least, some, |states| self.variances(states))
     }

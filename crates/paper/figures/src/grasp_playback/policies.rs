@@ -7,14 +7,18 @@ use experiments::{HELD_OUT, TestSamples, grasp_baselines, grasp_naive, grasp_reg
 use motion::{NegativeGradient, Policy};
 use rand_chacha::ChaCha8Rng;
 
-use crate::Who;
+use crate::Agent;
 
 /// Roll-outs sometimes leave the region of the data. There every receptive field counts, however small its activation.
 const CUTOFF: f64 = 1e-9;
 
 /// The learners that are shown, with their ids.
-pub(crate) const LEARNERS: [(&str, Who); 4] =
-    [("expert", Who::Expert), ("naive", Who::Naive), ("policy_align", Who::PolicyAlign), ("slope_gp", Who::SlopeGp)];
+pub(crate) const LEARNERS: [(&str, Agent); 4] = [
+    ("expert", Agent::Expert),
+    ("naive", Agent::Naive),
+    ("policy_align", Agent::PolicyAlign),
+    ("slope_gp", Agent::SlopeGp),
+];
 
 /// The result of PolicyAlign, learnt as for the table.
 pub(super) struct Learnt {

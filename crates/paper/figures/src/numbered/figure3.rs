@@ -6,7 +6,7 @@ use nalgebra::{DVector, Point3, dmatrix, dvector};
 use plot::{Camera, Dash, Item, Paint, Picture, Space, Stroke};
 use serde::{Deserialize, Serialize};
 
-use crate::Who;
+use crate::Agent;
 use crate::sound::Sound;
 use crate::{Drawing, Sources, rounded};
 
@@ -22,7 +22,7 @@ const HORIZONTAL: [[f64; 3]; 4] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, -0.8,
 
 const GREY: &str = "#5a5a5a";
 
-/// The other policy's colour, distinct from those of [`Who`].
+/// The other policy's colour, distinct from those of [`Agent`].
 const PURPLE: &str = "#9a4a7c";
 
 /// Velocities from one point.
@@ -63,7 +63,7 @@ pub(crate) fn vectors() -> anyhow::Result<Vectors> {
 
 pub(crate) fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
     let Vectors { policy, seen: [first, second], mean, mean_seen, other, other_seen } = sources.document("figure3")?;
-    let (expert, shown, naive) = (Who::Expert.color(), Who::Demonstration.color(), Who::Naive.color());
+    let (expert, shown, naive) = (Agent::Expert.color(), Agent::Demonstration.color(), Agent::Naive.color());
     let observed = [arrow(first, shown, 3.0), arrow(second, shown, 3.0)];
     let names = [name(first, "x₁", (-4.0, -12.0), shown), name(second, "x₂", (6.0, 8.0), shown)];
     let seen = [

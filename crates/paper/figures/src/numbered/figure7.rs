@@ -4,7 +4,7 @@ use anyhow::Context as _;
 use nalgebra::Point3;
 use plot::{Camera, Paint, Panel, Picture, Space};
 
-use crate::Who;
+use crate::Agent;
 use crate::grasp_playback::{GraspPlayback, Movement};
 use crate::scene::stage;
 use crate::scene::stage::Actor;
@@ -48,7 +48,7 @@ fn frame(playback: &GraspPlayback, actor: &Actor, movement: &Movement, sample: u
         title: format!("after {:.1} s", playback.time_step * sample as f64),
         camera: Camera { azimuth: 30.0, elevation: 25.0 },
         items,
-        over: stage::ways(&movement.palms[..=sample], Who::Demonstration.stroke(1.6)).to_vec(),
+        over: stage::ways(&movement.palms[..=sample], Agent::Demonstration.stroke(1.6)).to_vec(),
         frame: None,
         extent: Some([Point3::new(-0.15, -side, 0.0), Point3::new(playback.scene.table.far - 0.1, side, 1.13)]),
         size: (360.0, 392.0),

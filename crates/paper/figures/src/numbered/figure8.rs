@@ -5,11 +5,11 @@ use metrics::Summary;
 use nalgebra::{Point3, Translation3, Vector3};
 use plot::{Axis, Camera, Curve, Curves, Dash, Filling, Frame, Item, Mark, Paint, Panel, Picture, Sign, Space, Stroke};
 
-use crate::Who;
+use crate::Agent;
+use crate::agent::TRUTH;
 use crate::grasp_playback::all_around::AllAround;
 use crate::grasp_playback::{GraspPlayback, LEARNERS, Movement};
 use crate::scene::stage;
-use crate::who::TRUTH;
 use crate::{Csv, Drawing, Sources, rounded};
 
 /// Interval between marks on a curve, seconds.
@@ -19,13 +19,13 @@ const EVERY: f64 = 5.0;
 const CENTIMETRES: f64 = 100.0;
 
 /// The learner that only this figure shows.
-const ALL_AROUND: (&str, Who) = ("all_around", Who::PolicyAlignAllAround);
+const ALL_AROUND: (&str, Agent) = ("all_around", Agent::PolicyAlignAllAround);
 
 pub(crate) fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
     let playback = played(sources)?;
     let frame = frame(&playback);
-    let mut learners: Vec<(&str, Who)> = shown(&playback).filter(|(_, who)| *who != Who::Expert).collect();
-    learners.sort_by_key(|(_, who)| *who == Who::SlopeGp);
+    let mut learners: Vec<(&str, Agent)> = shown(&playback).filter(|(_, agent)| *agent != Agent::Expert).collect();
+    learners.sort_by_key(|(_, agent)| *agent == Agent::SlopeGp);
     let views: Vec<Space> = learners.iter().map(|learner| view(*learner, &playback, &frame)).collect();
     let distances =
         shown(&playback).map(|learner| Distances::of(&playback, learner)).collect::<anyhow::Result<Vec<_>>>()?;
@@ -71,7 +71,7 @@ pub fn ends_of_reaching(sources: &Sources) -> Option<Ends> {
 }
 
 /// The learners with movements; older figure data have fewer.
-fn shown(playback: &GraspPlayback) -> impl Iterator<Item = (&'static str, Who)> {
+fn shown(playback: &GraspPlayback) -> impl Iterator<Item = (&'static str, Agent)> {
     LEARNERS.into_iter().chain([ALL_AROUND]).filter(|(id, _)| movements(playback, id).next().is_some())
 }
 
@@ -108,20 +108,20 @@ fn frame(playback: &GraspPlayback) -> Frame {
 }
 
 /// A learner's paths over the expert's, from above.
-fn view((id, who): (&str, Who), playback: &GraspPlayback, frame: &Frame) -> Space {
+fn view((id, agent): (&str, Agent), playback: &GraspPlayback, frame: &Frame) -> Space {
     let ball = &playback.scene.ball;
     let (centre, radius) = (Point3::from(ball.centre), ball.diameter / 2.0);
     let mut items = walls(playback, frame);
     items.push(Item::Ball { centre, radius, paint: Paint { color: stage::BALL, opacity: 0.45 } });
     let mut over = vec![];
-    for (id, color, width) in [("expert", TRUTH, 5.0), (id, who.color(), 1.8)] {
+    for (id, color, width) in [("expert", TRUTH, 5.0), (id, agent.color(), 1.8)] {
         for movement in movements(playback, id) {
             over.extend(stage::ways(&movement.palms, Stroke { color, width, dash: Dash::Solid }));
             let points = [0, 1].iter().filter_map(|&hand| palm(movement, hand).last()).collect();
             over.push(Item::Dots { points, color, radius: 3.6 });
         }
     }
-    let name = who.name();
+    let name = agent.name();
     let title = name[..1].to_uppercase() + &name[1..];
     Space { title, camera: Camera::ABOVE, items, over, frame: Some(frame.clone()), extent: None, size: SIZE }
 }
@@ -148,13 +148,13 @@ fn walls(playback: &GraspPlayback, frame: &Frame) -> Vec<Item> {
 /// Distances between a learner's hands and their target places at the ball.
 struct Distances {
     id: &'static str,
-    who: Who,
+    agent: Agent,
     /// (time in seconds, mean, standard deviation) over all hands, metres.
     over_time: Vec<(f64, f64, f64)>,
 }
 
 impl Distances {
-    fn of(playback: &GraspPlayback, (id, who): (&'static str, Who)) -> anyhow::Result<Self> {
+    fn of(playback: &GraspPlayback, (id, agent): (&'static str, Agent)) -> anyhow::Result<Self> {
         let hands = movements(playback, id).flat_map(|movement| [(movement, 0), (movement, 1)]);
         let hands: Vec<Vec<f64>> = hands.map(|(movement, hand)| distance(playback, movement, hand).collect()).collect();
         let at = |sample: usize| {
@@ -163,7 +163,7 @@ impl Distances {
             Ok((sample as f64 * playback.time_step, mean, sd.unwrap_or(0.0)))
         };
         let n_samples = hands.iter().map(Vec::len).min().unwrap_or(0);
-        Ok(Distances { id, who, over_time: (0..n_samples).map(at).collect::<anyhow::Result<_>>()? })
+        Ok(Distances { id, agent, over_time: (0..n_samples).map(at).collect::<anyhow::Result<_>>()? })
     }
 
     /// The mean distance at the end, metres.
@@ -177,12 +177,12 @@ impl Distances {
         let last = self.over_time.len().saturating_sub(1);
         let marked = self.over_time.iter().enumerate().filter(|(at, _)| at.is_multiple_of(every) || *at == last);
         let points = marked.map(|(_, &(time, mean, sd))| (time, CENTIMETRES * mean, CENTIMETRES * sd)).collect();
-        Curve { points, stroke: stroke(self.who), sign: Some(sign(self.who)), name: self.name() }
+        Curve { points, stroke: stroke(self.agent), sign: Some(sign(self.agent)), name: self.name() }
     }
 
     /// The learner, and the distance of its hands at the end.
     fn name(&self) -> String {
-        format!("{}: {:.1} cm", self.who.name(), CENTIMETRES * self.at_end())
+        format!("{}: {:.1} cm", self.agent.name(), CENTIMETRES * self.at_end())
     }
 }
 
@@ -205,16 +205,16 @@ fn curves(distances: &[Distances], time_step: f64) -> Curves {
 }
 
 /// The expert's line is wider, so that it remains visible under another line.
-fn stroke(who: Who) -> Stroke {
-    who.stroke(if who == Who::Expert { 4.0 } else { 1.8 })
+fn stroke(agent: Agent) -> Stroke {
+    agent.stroke(if agent == Agent::Expert { 4.0 } else { 1.8 })
 }
 
-fn sign(who: Who) -> Sign {
-    let mark = match who {
-        Who::Naive => Mark::Square,
-        Who::PolicyAlign => Mark::Up,
-        Who::PolicyAlignAllAround => Mark::Star,
-        Who::SlopeGp => Mark::Down,
+fn sign(agent: Agent) -> Sign {
+    let mark = match agent {
+        Agent::Naive => Mark::Square,
+        Agent::PolicyAlign => Mark::Up,
+        Agent::PolicyAlignAllAround => Mark::Star,
+        Agent::SlopeGp => Mark::Down,
         _ => Mark::Circle,
     };
     Sign { mark, filling: Filling::Full }

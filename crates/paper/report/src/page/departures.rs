@@ -9,12 +9,12 @@ use super::{Contents, pictures};
 /// The part about them; `None` if the run has no printed numbers.
 pub(super) fn part(contents: &Contents<'_>, printed: usize) -> Option<Part> {
     let title = "What was fitted".to_owned();
-    let body = html! { (what_was_fitted()) (pictures::otherwise(contents)) };
+    let body = html! { (fitted_settings()) (pictures::otherwise(contents)) };
     (printed > 0).then(|| Part { id: "fitted".to_owned(), title, body })
 }
 
 /// The fitted settings and other departures, in words.
-fn what_was_fitted() -> Markup {
+fn fitted_settings() -> Markup {
     html! {
         h2 { "What was fitted" }
         ul .points {

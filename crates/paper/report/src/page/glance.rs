@@ -36,7 +36,7 @@ pub(super) fn opening(contents: &Contents<'_>, all: &[Compared<'_>]) -> Markup {
                 @if let Some((figure, svg)) = overview { (super::card(figure, svg, "")) }
                 (total(&tally, &literal))
             }
-            (how_it_went(&tally, all))
+            (verdicts_by_experiment(&tally, all))
             @if all.iter().any(Compared::is_glimpse) {
                 p .notice { "With fewer than " (FEW) " data sets a row single numbers mean little." }
             } @else { (not_reached(all)) }
@@ -64,7 +64,7 @@ fn in_short(contents: &Contents<'_>, all: &[Compared<'_>]) -> Markup {
                 b { "In short:" }
                 " with nothing in the robot’s way (Table 2), PolicyAlign, the paper’s method, has an error of " (policy_align)
                 ", the naive learner, which takes movements as they were seen, one of " (naive) ", both as shares of the policy’s variance at the demonstrated states."
-                @for experiment in where_naive_errs_less(all) {
+                @for experiment in naive_ahead(all) {
                     " The naive learner errs less than PolicyAlign throughout in “" a href={ "#" (experiment.id) } { (experiment.title) } "”."
                 }
                 @if let Some(ends) = ends_of_reaching(contents.sources) {
@@ -82,7 +82,7 @@ fn centimetres(metres: f64) -> String {
 }
 
 /// The experiments with printed numbers in which the naive learner errs less than PolicyAlign for every policy.
-fn where_naive_errs_less<'a>(all: &[Compared<'a>]) -> impl Iterator<Item = &'a Experiment> {
+fn naive_ahead<'a>(all: &[Compared<'a>]) -> impl Iterator<Item = &'a Experiment> {
     let is_ahead = |compared: &&Compared<'_>| {
         let comparisons = Comparisons::of(compared.experiment, compared.result);
         let of_policies = comparisons
@@ -127,7 +127,7 @@ fn close(tally: &Tally) -> String {
 }
 
 /// The number of cells per verdict, for each experiment.
-fn how_it_went(total: &Tally, all: &[Compared<'_>]) -> Markup {
+fn verdicts_by_experiment(total: &Tally, all: &[Compared<'_>]) -> Markup {
     html! {
         @if total.total() > 0 {
             table .tallies {

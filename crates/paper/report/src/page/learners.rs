@@ -18,7 +18,7 @@ pub(super) fn part() -> Part {
     let body = html! {
         h2 { (title) }
         dl .measures {
-            @for who in Method::ALL { div { dt { (swatch(who)) (who.label()) } dd { (who.description()) } } }
+            @for method in Method::ALL { div { dt { (swatch(method)) (method.label()) } dd { (method.description()) } } }
         }
         p { (emphasised(CAUTION)) }
         h3 { "Errors" }
@@ -36,6 +36,6 @@ pub(super) fn part() -> Part {
 }
 
 /// The learner's colour in the figures, if it has one.
-fn swatch(who: Method) -> Markup {
-    html! { @if let Some(color) = color_of(who) { span .swatch style={ "background:" (color) } {} } }
+fn swatch(method: Method) -> Markup {
+    html! { @if let Some(color) = color_of(method) { span .swatch style={ "background:" (color) } {} } }
 }

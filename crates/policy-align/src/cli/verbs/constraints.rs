@@ -74,7 +74,7 @@ impl Constraints {
             let words: Vec<String> = found.iter().map(|stretch| stretch.in_words(&model.state)).collect();
             return Ok(Output::json(&json!({ "constraints": found, "in_words": words }), Exit::Done));
         }
-        let mut lines = told(&model, &found);
+        let mut lines = summary(&model, &found);
         if let (Some(path), Some(what)) = (&self.output, &written) {
             lines.written(path, what);
         }
@@ -119,7 +119,7 @@ impl Constraints {
 }
 
 /// The number of stretches of each kind, and the first ones; if not all are listed, those with a constraint come first.
-fn told(model: &Model, found: &[ConstraintStretch]) -> Lines {
+fn summary(model: &Model, found: &[ConstraintStretch]) -> Lines {
     let mut lines = Lines::default();
     let count = |acting| found.iter().filter(|stretch| stretch.acting == acting).count();
     let constraints = count(Acting::Constraint);

@@ -124,7 +124,7 @@ impl Fit {
         let report: Vec<PathBuf> = files.into_iter().skip(1).map(|(path, _)| path).collect();
         let unreported = unreported(&model.trust.findings, &reported);
         let with_robot = fit_options.robot.is_some();
-        Ok(self.said(session, (&model, &unreported, with_robot), &report, judged.as_ref()))
+        Ok(self.result(session, (&model, &unreported, with_robot), &report, judged.as_ref()))
     }
 
     fn output(&self) -> PathBuf {
@@ -141,7 +141,7 @@ impl Fit {
         [(page, html), (numbers, format!("{document:#}\n"))]
     }
 
-    fn said(
+    fn result(
         &self,
         session: &Session,
         (model, unreported, with_robot): (&Model, &[Finding], bool),

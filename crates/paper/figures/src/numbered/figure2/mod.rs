@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use self::contact::{FACE, Finger, Movement, touching};
 use crate::sound::{Sound, as_many, some, within};
-use crate::{Csv, Drawing, Sources, Who, rounded};
+use crate::{Agent, Csv, Drawing, Sources, rounded};
 
 /// Seconds at which postures are drawn, and the colours of the free and the stopped finger, darker with time.
 const POSTURES: [(f64, &str, &str, &str); 5] = [
@@ -22,8 +22,8 @@ const POSTURES: [(f64, &str, &str, &str); 5] = [
 ];
 
 /// Colours as in every figure: the policy is the expert's, and its component along the box is the demonstration.
-const FREE: &str = Who::Expert.color();
-const STOPPED: &str = Who::Demonstration.color();
+const FREE: &str = Agent::Expert.color();
+const STOPPED: &str = Agent::Demonstration.color();
 const BOX: &str = "#3c3c3c";
 const TIP: &str = "#009e73";
 

@@ -4,7 +4,7 @@ use experiments::line;
 use nalgebra::{Point3, Vector3};
 use plot::{Camera, Dash, Frame, Item, Paint, Space, Stroke};
 
-use crate::Who;
+use crate::Agent;
 
 /// Number of movements that are drawn.
 const SHOWN: usize = 50;
@@ -56,7 +56,7 @@ fn scene(
         let points = movement.iter().map(point).collect();
         items.push(Item::Path {
             points,
-            stroke: Who::Demonstration.stroke(1.0),
+            stroke: Agent::Demonstration.stroke(1.0),
             label: movement_name.map(str::to_owned),
         });
     }
@@ -65,7 +65,7 @@ fn scene(
     let line = Stroke { color: LINE, width: 1.4, dash: Dash::Dashed };
     let over = vec![
         Item::Path { points: vec![-far, far], stroke: line, label: along.map(str::to_owned) },
-        Item::Dots { points: ends, color: Who::Demonstration.color(), radius: 2.4 },
+        Item::Dots { points: ends, color: Agent::Demonstration.color(), radius: 2.4 },
     ];
     let goal = Item::Mark { at: Point3::origin(), text: "0".to_owned(), color: GOAL };
     let over = over.into_iter().chain(measured).chain([goal]).collect();

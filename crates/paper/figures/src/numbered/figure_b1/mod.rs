@@ -10,7 +10,7 @@ use experiments::seed::generator;
 use plot::{Canvas, Dash, Mark, Picture, Stroke, Thing};
 use serde::{Deserialize, Serialize};
 
-use crate::Who;
+use crate::Agent;
 use crate::miniature::{Miniature, extent_of};
 use crate::sound::{Sound, among, as_many, some};
 use crate::{Csv, Drawing, Sources, rounded};
@@ -29,7 +29,7 @@ const GAP: f64 = 6.0;
 const MARGIN: f64 = 14.0;
 
 /// Colours of the groups that contain the finally kept movements, and of those that are cut off.
-const KEPT: &str = Who::Demonstration.color();
+const KEPT: &str = Agent::Demonstration.color();
 const CUT_OFF: &str = "#b0578d";
 
 /// How movements are drawn.

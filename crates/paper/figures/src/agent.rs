@@ -6,7 +6,7 @@ use plot::{Dash, Stroke};
 /// An agent that moves. Each has the same colour and line in every picture, distinguishable in grey and for
 /// colour-blind people.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Who {
+pub(crate) enum Agent {
     /// The true policy.
     Expert,
     /// Direct policy learning.
@@ -25,52 +25,52 @@ pub(crate) enum Who {
 
 /// The colour of a learner in every figure, in HTML notation; `None` if no figure shows it.
 pub fn color_of(learner: Method) -> Option<&'static str> {
-    let who = match learner {
-        Method::Naive => Who::Naive,
-        Method::PolicyAlign => Who::PolicyAlign,
-        Method::SlopeGp => Who::SlopeGp,
-        Method::DirectGp => Who::DirectGp,
+    let agent = match learner {
+        Method::Naive => Agent::Naive,
+        Method::PolicyAlign => Agent::PolicyAlign,
+        Method::SlopeGp => Agent::SlopeGp,
+        Method::DirectGp => Agent::DirectGp,
         Method::ConstraintConsistent | Method::SlopeGpNoTrend | Method::SlopeGpPushed | Method::AutoGp => return None,
     };
-    Some(who.color())
+    Some(agent.color())
 }
 
 /// Grey, for the true policy where a learnt one is drawn over it.
 pub(crate) const TRUTH: &str = "#b4b4b4";
 
-impl Who {
+impl Agent {
     /// The colour, in HTML notation.
     pub(crate) const fn color(self) -> &'static str {
         match self {
-            Who::Expert => "#1a1a1a",
-            Who::Naive => "#009e73",
-            Who::PolicyAlign => "#d55e00",
-            Who::PolicyAlignAllAround => "#7a3200",
-            Who::SlopeGp => "#cc79a7",
-            Who::DirectGp => "#b39b00",
-            Who::Demonstration => "#0072b2",
+            Agent::Expert => "#1a1a1a",
+            Agent::Naive => "#009e73",
+            Agent::PolicyAlign => "#d55e00",
+            Agent::PolicyAlignAllAround => "#7a3200",
+            Agent::SlopeGp => "#cc79a7",
+            Agent::DirectGp => "#b39b00",
+            Agent::Demonstration => "#0072b2",
         }
     }
 
     /// The line's dashes.
     pub(crate) fn dash(self) -> Dash {
         match self {
-            Who::Expert | Who::Demonstration | Who::SlopeGp => Dash::Solid,
-            Who::Naive | Who::DirectGp => Dash::Dotted,
-            Who::PolicyAlign | Who::PolicyAlignAllAround => Dash::Dashed,
+            Agent::Expert | Agent::Demonstration | Agent::SlopeGp => Dash::Solid,
+            Agent::Naive | Agent::DirectGp => Dash::Dotted,
+            Agent::PolicyAlign | Agent::PolicyAlignAllAround => Dash::Dashed,
         }
     }
 
     /// Its name in legends.
     pub(crate) fn name(self) -> &'static str {
         match self {
-            Who::Expert => "expert",
-            Who::Naive => "naive",
-            Who::PolicyAlign => "PolicyAlign",
-            Who::PolicyAlignAllAround => "PolicyAlign, shown from all sides",
-            Who::SlopeGp => "slope GP",
-            Who::DirectGp => "direct GP",
-            Who::Demonstration => "demonstration",
+            Agent::Expert => "expert",
+            Agent::Naive => "naive",
+            Agent::PolicyAlign => "PolicyAlign",
+            Agent::PolicyAlignAllAround => "PolicyAlign, shown from all sides",
+            Agent::SlopeGp => "slope GP",
+            Agent::DirectGp => "direct GP",
+            Agent::Demonstration => "demonstration",
         }
     }
 
