@@ -15,6 +15,8 @@ const LEAST: f64 = 1e-10;
 const WORTH: f64 = 0.5;
 /// Smallest share of free rows in any fit. From fewer, later fits hardly reach the half that counts.
 const LEAST_FREE: f64 = 0.4;
+/// Largest share of deflections along the motion, in that of noise, with which another fit may help.
+const HOPELESS: f64 = 0.6;
 /// Maximum number of fits.
 const ROUNDS: usize = 6;
 /// Variance added to deflected velocities, in mean squares of a component: they count no more.
@@ -27,15 +29,28 @@ pub(crate) struct OfFreeRows {
     pub(crate) free: Vec<bool>,
     /// Largest |u − û| of a free row, in units of the state per second.
     pub(crate) within: f64,
+    /// Share of the deflected rows' squared left-out errors along their motion.
+    pub(crate) along: f64,
 }
 
 impl OfFreeRows {
-    /// Repeats the fit without the rows that it predicts worst until these no longer change. `None` if `all`, the fit of all rows, has no
-    /// such rows, or too many.
+    fn new(direct: DirectOutcome, free: Vec<bool>, within: f64, kept: &Kept) -> OfFreeRows {
+        let (mut along, mut all) = (0.0, 0.0);
+        for row in (0..free.len()).filter(|&row| !free[row]) {
+            let error = direct.left_out.residuals.row(row);
+            along += ((error * kept.velocities.column(row)).x / kept.speeds[row]).powi(2);
+            all += error.norm_squared();
+        }
+        OfFreeRows { direct, free, within, along: along / all }
+    }
+
+    /// Repeats the fit, with one family, without the rows that it predicts worst until these no longer change; at last with all families.
+    /// `None` if `all`, the fit of all rows, has no such rows or too many, or if they do not look like deflected ones.
     pub(crate) fn of(gp: &DirectGp, kept: &Kept, all: &DirectOutcome) -> Option<OfFreeRows> {
         if all.left_out.is_nearly_exact() {
             return None;
         }
+        let one_family = DirectGp { families: vec![all.fit.family], ..gp.clone() };
         let mut found: Option<OfFreeRows> = None;
         for _ in 0..ROUNDS {
             let direct = found.as_ref().map_or(all, |found| &found.direct);
@@ -52,9 +67,19 @@ impl OfFreeRows {
                 return None;
             }
             let within = direct.fit.model.unit * limit.sqrt();
-            found = Some(OfFreeRows { direct: gp.outcome(&without_deflected(kept, &free)).ok()?, free, within });
+            let direct = one_family.outcome(&without_deflected(kept, &free)).ok()?;
+            let next = OfFreeRows::new(direct, free, within, kept);
+            if found.is_some() && next.along * kept.velocities.nrows() as f64 > HOPELESS {
+                return None;
+            }
+            found = Some(next);
         }
-        found
+        let found = found?;
+        if found.direct.left_out.is_exact() || gp.families.len() == 1 {
+            return Some(found);
+        }
+        let direct = gp.outcome(&without_deflected(kept, &found.free)).ok()?;
+        Some(OfFreeRows::new(direct, found.free, found.within, kept))
     }
 
     /// The same model on all rows, those near its predictions free, through at most `most` of them; `None` without a Cholesky factor.
@@ -62,7 +87,7 @@ impl OfFreeRows {
         let within = self.within;
         let free = near(&self.direct.fit.model.moving_actions(all.states.as_view()), all.observed(), within);
         let direct = self.direct.on_all_rows(&without_deflected(all, &free), most)?;
-        Some(OfFreeRows { direct, free, within })
+        Some(OfFreeRows::new(direct, free, within, all))
     }
 }
 

@@ -143,17 +143,11 @@ impl Compared<'_> {
 
     /// (R10).
     fn free(&self) -> Option<FreeRows> {
-        let &OfFreeRows { ref free, within, .. } = self.freely?;
-        let deflected = || (0..free.len()).filter(|&row| !free[row]);
-        let count = deflected().count();
-        let along: f64 = deflected().map(|row| self.direct_residual(row).powi(2)).sum();
-        let whole: f64 = deflected().map(|row| self.direct.0.residuals.row(row).norm_squared()).sum();
-        Some(FreeRows {
-            share: 1.0 - count as f64 / free.len() as f64,
-            within,
-            misfit: along / count.max(1) as f64 / within.powi(2),
-            along: along / (self.direct_unit.powi(2) * whole),
-        })
+        let &OfFreeRows { ref free, within, along, .. } = self.freely?;
+        let squares = (0..free.len()).filter(|&row| !free[row]).map(|row| self.direct_residual(row).powi(2));
+        let (count, sum) = squares.fold((0, 0.0), |(count, sum), square| (count + 1, sum + square));
+        let misfit = sum / f64::from(count.max(1)) / within.powi(2);
+        Some(FreeRows { share: 1.0 - f64::from(count) / free.len() as f64, within, misfit, along })
     }
 
     /// e^s of (R7).
