@@ -74,7 +74,7 @@ pub(super) fn learner_decision(options: &FitOptions, readings: &AutoFit) -> Deci
                 Some(reading) => format!("reading given: {reading:?}").to_lowercase(),
                 None => format!(
                     "{}: error relative to the motion {} with direction, {} without",
-                    found(reading, numbers.free),
+                    found((reading, numbers.free), readings.takes_slope()),
                     squared_error(numbers.a_s),
                     squared_error(numbers.a_d)
                 ),
@@ -85,16 +85,17 @@ pub(super) fn learner_decision(options: &FitOptions, readings: &AutoFit) -> Deci
 }
 
 /// Whether the data show constraints, in words.
-fn found(reading: Hypothesis, free: Option<FreeRows>) -> String {
-    let found = match (reading, free) {
-        (_, Some(free)) => {
-            return format!("constraints detected, but {} of the samples move freely", percent(free.share));
-        }
-        (Hypothesis::Free, _) => "no constraints detected",
-        (Hypothesis::Constrained, _) => "constraints detected",
-        (Hypothesis::Ambiguous, _) => "free or constrained, both readings fit",
-        (Hypothesis::Unexplained, _) => "neither reading fits",
-        (Hypothesis::TooFew, _) => "too few movements to detect constraints",
+fn found((reading, free): (Hypothesis, Option<FreeRows>), takes_slope: bool) -> String {
+    if let Some(free) = free {
+        return format!("constraints detected, but {} of the samples move freely", percent(free.share));
+    }
+    let found = match reading {
+        Hypothesis::Free if takes_slope => "no constraints detected, and movements descend a potential",
+        Hypothesis::Free => "no constraints detected",
+        Hypothesis::Constrained => "constraints detected",
+        Hypothesis::Ambiguous => "free or constrained, both readings fit",
+        Hypothesis::Unexplained => "neither reading fits",
+        Hypothesis::TooFew => "too few movements to detect constraints",
     };
     found.to_owned()
 }
