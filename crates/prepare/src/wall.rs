@@ -44,8 +44,9 @@ pub struct Wall {
 
 impl Wall {
     /// The most densely populated wall among `states` (n, N); `movement` holds the number of each state's movement, (N).
-    /// Trial planes pass through n states each, spread evenly over all by a fixed sequence, so the result is deterministic. A trial
-    /// succeeds if all n states lie on the wall, which is rare for n > 4. `None` for n < 2.
+    /// Trial planes pass through n states each, spread evenly over all by a fixed sequence, so the result is deterministic. Such a trial
+    /// succeeds if all n states lie on the wall, which is rare for large n. Further ones are the outermost planes across each axis, on which
+    /// joints' stops and tables lie. `None` for n < 2.
     pub fn of(states: &DMatrix<f64>, movement: &[usize]) -> Option<Wall> {
         let (n, count) = states.shape();
         if n < 2 || count == 0 {
@@ -55,8 +56,9 @@ impl Wall {
         let all: Vec<usize> = (0..count).collect();
         let widest = Plane::fitted(states, &all).deviations[n - 1];
         let mut heights = vec![0.0; count];
-        let candidates = (0..PLANES).filter_map(|number| {
-            let plane = Plane::fitted(states, &spread_out(number, n, count));
+        let through = (0..PLANES).map(|number| Plane::fitted(states, &spread_out(number, n, count)));
+        let outermost = (0..n).flat_map(|axis| Plane::outermost(states, axis));
+        let candidates = through.chain(outermost).filter_map(|plane| {
             let (wall, on, width) = plane.refined(states, &mut heights)?;
             let reached: HashSet<usize> = on.into_iter().map(|state| movement[state]).collect();
             (reached.len() as f64 >= MOVEMENTS * movements && width >= WIDE * widest).then_some(wall)
@@ -101,6 +103,16 @@ impl Plane {
         let mut deviations: Vec<f64> = eigen.eigenvalues.iter().map(|&square| square.max(0.0).sqrt()).collect();
         deviations.sort_by(f64::total_cmp);
         Plane { at, normal, deviations }
+    }
+
+    /// The planes across an axis through its largest and smallest coordinate.
+    fn outermost(states: &DMatrix<f64>, axis: usize) -> [Plane; 2] {
+        let row = states.row(axis).transpose();
+        [row.imax(), row.imin()].map(|outermost| Plane {
+            at: states.column(outermost).into_owned(),
+            normal: DVector::from_fn(states.nrows(), |other, _| f64::from(u8::from(other == axis))),
+            deviations: Vec::new(),
+        })
     }
 
     /// Refits the plane to the states near it, several times. Returns a wall with the states on it and their least standard

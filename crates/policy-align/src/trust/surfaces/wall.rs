@@ -9,7 +9,7 @@ use super::{as_recorded, equation, some_of};
 use crate::{Finding, Prepared, VelocitySource, Verdict};
 
 /// Largest dimension n: see [`Wall::of`].
-const DIMENSIONS: usize = 4;
+const DIMENSIONS: usize = 8;
 /// Largest number of states.
 const STATES: usize = 2000;
 /// Largest standard deviation of the states on a wall: factors of the noise of positions, as recorded or smoothed, plus a share of the
@@ -91,6 +91,18 @@ mod tests {
 
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(6))]
+
+        /// A wall across an axis, such as a joint's stop, is found in more dimensions, too.
+        #[test]
+        fn a_stop_is_found(seed in any::<u64>(), n in 5..9usize, level in -1.0..-0.3f64, noise in 0.0..0.03f64, there in any::<bool>()) {
+            let mut rng = ChaCha8Rng::seed_from_u64(seed);
+            let axis = rng.random_range(0..n);
+            let up = if rng.random() { 1.0 } else { -1.0 };
+            let normal = DVector::from_fn(n, |other, _| if other == axis { up } else { 0.0 });
+            let found = found(&movements(&normal, there.then_some(level), noise, &mut rng), n);
+            prop_assert_eq!(found.is_some(), there);
+            prop_assert!(found.is_none_or(|found| found.normal.dot(&normal) > 0.99));
+        }
 
         /// A wall in the way is found, with its normal and place; movements without one have none.
         #[test]
