@@ -31,8 +31,9 @@ impl Both {
 
     /// Drops the direct GP of the free rows if the constrained rows contradict it.
     fn freely_if_it_explains_all(mut self) -> Both {
-        let explains = self.compared(None).0.free_rows_explain_all();
-        self.freely = self.freely.filter(|_| explains);
+        if self.freely.is_some() && !self.compared(None).0.free_rows_explain_all() {
+            self.freely = None;
+        }
         self
     }
 
