@@ -24,8 +24,11 @@ const DENSE: f64 = 20.0;
 const ALL: f64 = 0.95;
 /// Least share of the movements that reach the wall.
 const MOVEMENTS: f64 = 0.5;
-/// Least extent along a wall, as a share of the largest extent of all states; a smaller one is a goal.
+/// Least standard deviation along a wall, as a share of the largest one of all states; a smaller one is a goal.
 const WIDE: f64 = 0.2;
+/// The same if the standard deviation along the wall is this multiple of that across it: states at a goal spread alike in all directions.
+const FLAT_WIDE: f64 = 0.1;
+const FLAT: f64 = 10.0;
 
 /// A plane that states of many movements lie on and none lie beyond: a table, a fence or a joint's stop.
 #[derive(Debug, Clone, PartialEq)]
@@ -59,9 +62,11 @@ impl Wall {
         let through = (0..PLANES).map(|number| Plane::fitted(states, &spread_out(number, n, count)));
         let outermost = (0..n).flat_map(|axis| Plane::outermost(states, axis));
         let candidates = through.chain(outermost).filter_map(|plane| {
-            let (wall, on, width) = plane.refined(states, &mut heights)?;
+            let (wall, on, deviations) = plane.refined(states, &mut heights)?;
             let reached: HashSet<usize> = on.into_iter().map(|state| movement[state]).collect();
-            (reached.len() as f64 >= MOVEMENTS * movements && width >= WIDE * widest).then_some(wall)
+            let is_flat = deviations[1] >= FLAT * deviations[0];
+            let is_wide = deviations[1] >= if is_flat { FLAT_WIDE } else { WIDE } * widest;
+            (reached.len() as f64 >= MOVEMENTS * movements && is_wide).then_some(wall)
         });
         candidates.max_by(|a, b| a.density().total_cmp(&b.density()))
     }
@@ -115,9 +120,9 @@ impl Plane {
         })
     }
 
-    /// Refits the plane to the states near it, several times. Returns a wall with the states on it and their least standard
-    /// deviation along it, unless the plane is no wall. `heights` is overwritten, (N).
-    fn refined(mut self, states: &DMatrix<f64>, heights: &mut [f64]) -> Option<(Wall, Vec<usize>, f64)> {
+    /// Refits the plane to the states near it, several times. Returns a wall with the states on it and their standard deviations along
+    /// the principal axes, ascending, unless the plane is no wall. `heights` is overwritten, (N).
+    fn refined(mut self, states: &DMatrix<f64>, heights: &mut [f64]) -> Option<(Wall, Vec<usize>, Vec<f64>)> {
         let (n, all) = (states.nrows(), heights.len() as f64);
         let mut farthest = self.heights(states, heights);
         let mut thickness = THIN * farthest;
@@ -139,7 +144,7 @@ impl Plane {
         let thinness = thickness / farthest;
         let is_wall = thinness < THIN && beyond < 0.01 && share >= SHARE.max(DENSE * thinness) && share < ALL;
         let wall = Wall { normal: self.normal * side, at: self.at, thickness, farthest, share };
-        is_wall.then_some((wall, on, self.deviations[1]))
+        is_wall.then_some((wall, on, self.deviations))
     }
 
     /// Writes the distances of all states from the plane, negative behind it, and returns the largest absolute one.

@@ -104,6 +104,24 @@ mod tests {
             prop_assert!(found.is_none_or(|found| found.normal.dot(&normal) > 0.99));
         }
 
+        /// Narrow in one direction, where movements converge fastest, a flat wall is found; a thick one is no wall but a goal.
+        #[test]
+        fn narrow_walls_are_flat(seed in any::<u64>(), n in 3..9usize, width in 0.13..0.17f64, flat in any::<bool>()) {
+            let mut rng = ChaCha8Rng::seed_from_u64(seed);
+            let thickness = width * if flat { 0.01 } else { 0.3 };
+            let mut uniform = |deviation: f64| 3f64.sqrt() * deviation * rng.random_range(-1.0..1.0);
+            let columns: Vec<DVector<f64>> = (0..600).map(|state| {
+                let mut x = DVector::from_fn(n, |_, _| uniform(1.0));
+                x[1] = uniform(width);
+                x[0] = if state % 2 == 0 { uniform(thickness) } else { 2.0 + uniform(1.0) };
+                x
+            }).collect();
+            let movement: Vec<usize> = (0..600).map(|state| state / 30).collect();
+            let wall = Wall::of(&DMatrix::from_columns(&columns), &movement);
+            prop_assert_eq!(wall.is_some(), flat);
+            prop_assert!(wall.is_none_or(|wall| wall.normal[0] < -0.99));
+        }
+
         /// A wall in the way is found, with its normal and place; movements without one have none.
         #[test]
         fn a_wall_is_found(seed in any::<u64>(), n in 2..5usize, level in -1.0..-0.3f64, noise in 0.0..0.03f64, there in any::<bool>()) {
