@@ -688,7 +688,7 @@ proptest! {
 
     /// Beside noisy positions, late velocities are shifted: each sample has the velocity that it had before the delay.
     #[test]
-    fn late_velocities_beside_noisy_positions_are_shifted(rate in 1.7..2.0f64, noise in 0.034..0.038f64) {
+    fn late_velocities_beside_noisy_positions_are_shifted(rate in 1.7..2.0f64, noise in 0.034..0.06f64) {
         let samples = 3;
         let mut late = moving(&["x", "y"], |k, t| {
             let of = |t: f64| [(rate * t + k as f64).sin(), (0.7 * rate * t - k as f64).cos()];

@@ -1,14 +1,16 @@
 //! Detects velocities that were recorded later, or earlier, than the positions, and replaces or shifts late ones.
 
 use motion::{Episode, Verdict};
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 
 use crate::notes::Notes;
 use crate::numbers::{counted, percent, short};
 use crate::samples::noise::Noise;
 
-/// Maximum number of steps to compare, evenly spaced.
-const STEPS: usize = 20_000;
+/// Maximum number of steps or spans to compare, evenly spaced.
+const SPANS: usize = 20_000;
+/// Number of steps of a span. The noise of the positions at its ends changes its mean velocity by this number less than that of a step.
+const SPAN: usize = 8;
 /// Maximum lag, in samples and as a share of a movement.
 const SAMPLES: usize = 20;
 const SHARE: usize = 4;
@@ -17,11 +19,15 @@ const SHARE: usize = 4;
 const LEAST: isize = 3;
 /// Maximum mismatch of the shifted velocities with the steps, as a share of the mismatch as recorded, both without noise …
 const BETTER: f64 = 0.3;
-/// … or with noise, as a multiple of what the positions' noise makes, whose estimate may be a tenth too small.
+/// … or with noise, as a multiple of what the positions' noise makes.
 const NOISE: f64 = 1.25;
-/// A shift must reduce Σ mismatch by this multiple of the noise variance of a step's velocity along one axis. Without a lag, the
-/// correlation of noise with the change of velocities reduces it by about one such variance.
+/// The estimate of what the positions' noise makes may be too small by this factor.
+const TOO_SMALL: f64 = 1.05;
+/// A shift must reduce Σ mismatch by this multiple of the noise variance of a mean velocity along one axis. Without a lag, the correlation of noise
+/// with the change of velocities reduces it by about one such variance …
 const SIGNIFICANT: f64 = 50.0;
+/// … and the correlation of the positions' noise with that of velocities by a random sum, whose standard deviation it must exceed this often.
+const CHANCE: f64 = 5.0;
 /// Share of the steps, those with the smallest mismatches, that determine the shift.
 const KEPT: f64 = 0.9;
 /// Share of the squared velocities that a lag may change before the policy is in doubt.
@@ -89,28 +95,32 @@ struct Lag {
 struct Left {
     /// In half samples, positive if velocities are late.
     shift: isize,
-    /// Σ mismatch over the compared steps.
+    /// Σ mismatch over the compared steps or spans.
     sum: f64,
     /// The same [`without_switches`].
     without_switches: f64,
 }
 
-/// The shift at which velocities explain the steps best, if it matters beyond the noise of the positions.
+/// The shift at which velocities explain the steps best, or else spans of several steps, if it matters beyond the noise of the positions.
 fn lag(episodes: &[Episode], noise: &Noise) -> Option<Lag> {
     let mut lengths: Vec<usize> = episodes.iter().map(Episode::n_samples).collect();
     lengths.sort_unstable();
     let most = (lengths.get(lengths.len() / 2)? / SHARE).min(SAMPLES);
+    [1, SPAN].into_iter().find_map(|steps| lag_of_spans(episodes, noise, steps, most))
+}
+
+/// The shift of at most `most` samples at which velocities explain spans of that many steps best.
+fn lag_of_spans(episodes: &[Episode], noise: &Noise, steps: usize, most: usize) -> Option<Lag> {
     let halves = (2 * most).cast_signed();
     let comparable = || {
         episodes.iter().flat_map(|episode| {
-            let last = episode.n_samples().saturating_sub(1 + most);
-            (most..last).map(move |step| (episode, step))
+            let last = episode.n_samples().saturating_sub(steps + most);
+            (most..last).map(move |from| Span { episode, from, steps })
         })
     };
-    let every = comparable().count().div_ceil(STEPS).max(1);
-    let compared: Vec<(&Episode, usize)> = comparable().step_by(every).collect();
-    let mismatches =
-        |shift| compared.iter().map(|(episode, step)| mismatch(episode, *step, shift)).collect::<Option<Vec<f64>>>();
+    let every = comparable().count().div_ceil(SPANS).max(steps);
+    let compared: Vec<Span<'_>> = comparable().step_by(every).collect();
+    let mismatches = |shift| compared.iter().map(|span| span.mismatch(shift)).collect::<Option<Vec<f64>>>();
     let left = |shift| {
         let mismatches = mismatches(shift)?;
         let sum = mismatches.iter().sum::<f64>();
@@ -120,14 +130,17 @@ fn lag(episodes: &[Episode], noise: &Noise) -> Option<Lag> {
     let best = lefts.iter().min_by(|a, b| a.without_switches.total_cmp(&b.without_switches))?;
     let near = lefts.iter().filter(|left| left.shift.abs() <= 1);
     let (least, recorded) = (best.sum, near.map(|left| left.sum).fold(f64::INFINITY, f64::min));
-    let power = compared.iter().map(|(episode, step)| rate(episode, *step).norm_squared()).sum::<f64>();
-    // Both ends of a step contain the positions' noise.
+    let power = compared.iter().map(|span| span.rate().norm_squared()).sum::<f64>();
+    // Both ends of a span contain the positions' noise.
     let variance = noise.positions.as_ref().map_or(0.0, |of| 2.0 * of.iter().map(|sd| sd * sd).sum::<f64>());
-    let of_noise = compared.iter().map(|(episode, step)| variance / episode.times.seconds(*step, *step + 1).powi(2));
+    let of_noise = compared.iter().map(|span| variance / span.seconds().powi(2));
     let floor = of_noise.sum::<f64>().min(least);
-    let of_an_axis = floor / (compared.len() * episodes[0].positions.nrows()) as f64;
+    let compared_axes = (compared.len() * episodes[0].positions.nrows()) as f64;
+    let of_velocities = (least - TOO_SMALL * floor).max(0.0);
+    let by_chance =
+        (SIGNIFICANT * floor + CHANCE * 2.0 * (floor * of_velocities * compared_axes).sqrt()) / compared_axes;
     let only_noise_remains = least - floor <= BETTER * (recorded - floor) || least <= NOISE * floor;
-    let is_explained = only_noise_remains && recorded - least >= SIGNIFICANT * of_an_axis;
+    let is_explained = only_noise_remains && recorded - least >= by_chance;
     let step = episodes.iter().find_map(|episode| episode.times.median_step())?;
     let is_lag = best.shift.abs() >= LEAST && best.shift.abs() < halves && is_explained;
     is_lag.then(|| Lag {
@@ -146,17 +159,38 @@ fn without_switches(mut mismatches: Vec<f64>) -> f64 {
     mismatches[..kept].iter().sum()
 }
 
-/// Mean velocity of a step.
-fn rate(episode: &Episode, step: usize) -> nalgebra::DVector<f64> {
-    episode.step(step) / episode.times.seconds(step, step + 1)
+/// Consecutive steps of an episode.
+struct Span<'a> {
+    episode: &'a Episode,
+    /// Its first sample.
+    from: usize,
+    steps: usize,
 }
 
-/// Squared difference between a step's velocity and the one recorded `half_samples` after its middle.
-fn mismatch(episode: &Episode, step: usize, half_samples: isize) -> Option<f64> {
-    let velocities = episode.velocities.as_ref()?;
-    // The middle of the step is half a sample after its first sample.
-    let at = (2 * step + 1).saturating_add_signed(half_samples);
-    let (before, after) = (at / 2, at.div_ceil(2));
-    let recorded = (velocities.column(before) + velocities.column(after)) * 0.5;
-    Some((rate(episode, step) - recorded).norm_squared())
+impl Span<'_> {
+    fn seconds(&self) -> f64 {
+        self.episode.times.seconds(self.from, self.from + self.steps)
+    }
+
+    /// Mean velocity, from the positions at its ends.
+    fn rate(&self) -> DVector<f64> {
+        let positions = &self.episode.positions;
+        (positions.column(self.from + self.steps) - positions.column(self.from)) / self.seconds()
+    }
+
+    /// Squared difference between its mean velocity and that of those recorded `half_samples` after the middle of each step.
+    fn mismatch(&self, half_samples: isize) -> Option<f64> {
+        let Span { episode, from, steps } = *self;
+        let velocities = episode.velocities.as_ref()?;
+        let mut difference = self.rate();
+        for step in from..from + steps {
+            let share = episode.times.seconds(step, step + 1) / self.seconds();
+            // The middle of the step is half a sample after its first sample.
+            let at = (2 * step + 1).saturating_add_signed(half_samples);
+            for sample in [at / 2, at.div_ceil(2)] {
+                difference.axpy(-0.5 * share, &velocities.column(sample), 1.0);
+            }
+        }
+        Some(difference.norm_squared())
+    }
 }
