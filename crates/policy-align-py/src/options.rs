@@ -63,7 +63,8 @@ impl Preparing {
             Refusal::new(what, "smooth", "smooth=\"auto\", \"off\", 9 (samples) or \"0.2s\"")
         })?;
         let (jumps, wraps) = (chosen(&self.jumps, "jumps", "")?, chosen(&self.wraps, "wraps", "")?);
-        Ok(PrepareOptions { scale: self.scale, time_step: None, velocities, smoothing, jumps, wraps, context })
+        let scale = self.scale;
+        Ok(PrepareOptions { scale, velocities, smoothing, jumps, wraps, context, ..PrepareOptions::default() })
     }
 }
 

@@ -11,6 +11,8 @@ pub struct PrepareOptions {
     pub scale: Vec<(String, f64)>,
     /// Seconds between two samples; overrides the time stamps (`--dt`).
     pub time_step: Option<f64>,
+    /// Whether the user gave the unit of the time stamps (`--time-unit`), so that velocities do not correct it.
+    pub time_unit_given: bool,
     /// The use of recorded velocities (`--integration`).
     pub velocities: VelocityUse,
     /// Smoothing of positions (`--smooth`).

@@ -207,18 +207,38 @@ fn velocities_that_are_differences() {
 
 #[test]
 fn stamps() {
-    let slow = prepared(&changed(|episode| episode.times.stamps_mut().iter_mut().for_each(|t| *t *= 1000.0)));
-    assert_eq!(verdict(&slow, "read as milliseconds"), Verdict::Doubtful);
-    assert!((slow.time_step - STEP).abs() < 1e-12);
-    assert_eq!(slow.decisions.iter().filter(|decision| decision.what == "time step").count(), 1);
-    assert_eq!(slow.findings.len(), 1, "one fault, one finding: {:?}", slow.findings);
+    for (times, unit) in [(1e3, "milliseconds"), (1e6, "microseconds")] {
+        let in_unit = |episode: &mut Episode| episode.times.stamps_mut().iter_mut().for_each(|t| *t *= times);
+        let recordings = changed(in_unit);
+        let slow = prepared(&recordings);
+        assert_eq!(verdict(&slow, &format!("read as {unit}")), Verdict::Doubtful);
+        assert!((slow.time_step - STEP).abs() < 1e-12);
+        assert_eq!(slow.decisions.iter().filter(|decision| decision.what == "time step").count(), 1);
+        assert_eq!(slow.findings.len(), 1, "one fault, one finding: {:?}", slow.findings);
+        // What the user gave is kept.
+        let step = PrepareOptions { time_step: Some(times * STEP), ..PrepareOptions::default() };
+        let unit_given = PrepareOptions { time_unit_given: true, ..PrepareOptions::default() };
+        for given in [step, unit_given] {
+            let kept = prepare(&recordings, &given).unwrap();
+            assert!((kept.time_step / (times * STEP) - 1.0).abs() < 1e-12);
+            assert_eq!(verdict(&kept, "times the steps; they were converted"), Verdict::Doubtful);
+        }
+        let positions = changed(|episode| {
+            in_unit(episode);
+            episode.velocities = None;
+        });
+        let slow = prepared(&positions);
+        assert_eq!(verdict(&slow, &format!("stamps may be {unit}")), Verdict::Doubtful);
+        assert_eq!(slow.time_step, times * STEP);
+    }
+    // 1/60 is not taken for a degree in radians.
+    let minutes = prepared(&changed(|episode| episode.times.stamps_mut().iter_mut().for_each(|t| *t /= 60.0)));
+    let next = &minutes.findings.iter().find(|finding| finding.what.contains("0.0167 times the steps")).unwrap().next;
+    assert!(next.contains("minutes"), "{next}");
     let positions = changed(|episode| {
         episode.times.stamps_mut().iter_mut().for_each(|t| *t *= 1000.0);
         episode.velocities = None;
     });
-    let slow = prepared(&positions);
-    assert_eq!(verdict(&slow, "stamps may be milliseconds"), Verdict::Doubtful);
-    assert_eq!(slow.time_step, 50.0);
     let given = PrepareOptions { time_step: Some(STEP), ..PrepareOptions::default() };
     let fixed = prepare(&positions, &given).unwrap();
     assert_eq!((fixed.time_step, fixed.findings.len()), (STEP, 0));

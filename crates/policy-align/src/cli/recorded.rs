@@ -66,7 +66,7 @@ pub(crate) fn prepared_for(
     let mut own = config.under("read", reading)?.with_channels_of(model);
     own.elsewhere.clone_from(&reading.elsewhere);
     let reading = own;
-    let mut options = config.under("prepare", preparing)?.options(reading.dt)?;
+    let mut options = config.under("prepare", preparing)?.options(&reading)?;
     // The learner's states were multiplied by these scales, so the flags do not matter.
     options.scale = model.scale();
     options.context = model.context_use();

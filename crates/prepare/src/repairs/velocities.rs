@@ -8,7 +8,7 @@ use crate::repairs::agreement::Agreement;
 use crate::repairs::lag;
 use crate::samples::noise::Noise;
 
-use crate::repairs::stamps::{SLOW, usual_step};
+use crate::repairs::stamps::{SLOW, UNITS, usual_step};
 
 /// Velocities agree with the steps if they differ by at most this factor.
 const AGREE: f64 = 1.25;
@@ -86,7 +86,10 @@ pub(crate) fn decide(
         notes.decided("velocities", value, why, "--integration");
         return made.unwrap_or(Agreement::Own);
     }
-    rescale(episodes, &fit, channels, notes);
+    let stamps_are_given = options.time_step.is_some() || options.time_unit_given;
+    if stamps_are_given || !in_seconds(episodes, &fit, notes) {
+        rescale(episodes, &fit, channels, notes);
+    }
     Agreement::Own
 }
 
@@ -180,21 +183,29 @@ fn made_of_positions(episodes: &[Episode]) -> Option<Agreement> {
     (off(&before) || off(&both)).then_some(Agreement::Differences)
 }
 
+/// Converts stamps of milliseconds or microseconds to seconds, reports it and returns true, if that makes all velocities agree with
+/// the steps.
+fn in_seconds(episodes: &mut [Episode], fit: &Steps, notes: &mut Notes) -> bool {
+    let step = usual_step(episodes).unwrap_or(1.0);
+    let agree = |times: f64| fit.factors.iter().all(|factor| (1.0 / AGREE..AGREE).contains(&(factor * times)));
+    let Some(unit) = UNITS.into_iter().find(|unit| step > SLOW && agree(unit.a_second)) else { return false };
+    for episode in episodes.iter_mut() {
+        episode.times = episode.times.divided_by(unit.a_second);
+    }
+    let what = format!("stamps are {step:.0} apart and velocities {} times the steps", unit.a_second);
+    // Keeps only the valid one of two decisions on the time step.
+    notes.decisions.retain(|decision| decision.what != "time step");
+    let seconds = format!("{} s", step / unit.a_second);
+    notes.decided("time step", seconds, format!("{what}: stamps are {}", unit.name), "--dt");
+    let next = format!("--time-unit {}, or --dt", unit.flag);
+    notes.found(Verdict::Doubtful, format!("{what}: stamps were read as {}", unit.name), next);
+    true
+}
+
 /// Converts velocities in other units than the steps to those of positions and stamps, and reports it.
 fn rescale(episodes: &mut [Episode], fit: &Steps, channels: &[Channel], notes: &mut Notes) {
     let (low, high) = (fit.factors.min(), fit.factors.max());
     let step = usual_step(episodes).unwrap_or(1.0);
-    if step > SLOW && fit.factors.iter().all(|factor| (1.0 / AGREE..AGREE).contains(&(factor * 1000.0))) {
-        for episode in episodes.iter_mut() {
-            episode.times = episode.times.divided_by(1000.0);
-        }
-        let what = format!("stamps are {step:.0} apart and velocities 1000 times the steps");
-        // Keeps only the valid one of two decisions on the time step.
-        notes.decisions.retain(|decision| decision.what != "time step");
-        notes.decided("time step", format!("{} s", step / 1000.0), format!("{what}: stamps are milliseconds"), "--dt");
-        notes.found(Verdict::Doubtful, format!("{what}: stamps were read as milliseconds"), "--time-unit ms, or --dt");
-        return;
-    }
     let common = low * high > 0.0 && high / low < AGREE && low / high < AGREE;
     let factors = if common {
         let factor = (low * high).sqrt().copysign(low);
@@ -231,7 +242,7 @@ fn off(factor: f64) -> f64 {
     if factor < 0.0 { f64::INFINITY } else { factor.ln().abs() }
 }
 
-/// The factor of a common mistake that is near `times`, with some per cent of tolerance for integration rules, and the
+/// The factor of the common mistake that is nearest to `times`, with some per cent of tolerance for integration rules, and the
 /// advice.
 fn mistake(times: f64, step: f64) -> Option<(f64, &'static str)> {
     let degrees = "degrees and radians mixed? Use one of them (--degrees)";
@@ -241,10 +252,13 @@ fn mistake(times: f64, step: f64) -> Option<(f64, &'static str)> {
             "velocity columns in millimetres, or stamps in milliseconds? Name the units in the file, or give --time-unit ms",
         ),
         (0.001, "positions in millimetres? Name the units in the file"),
+        (60.0, "velocities per minute? Convert them to seconds"),
+        (1.0 / 60.0, "stamps in minutes? Convert them to seconds"),
         (1f64.to_degrees(), degrees),
         (1f64.to_radians(), degrees),
         (-1.0, "check the sign: velocities point against the movement"),
         (step, "these are steps, not velocities per second"),
     ];
-    mistakes.into_iter().find(|(factor, _)| (times / factor - 1.0).abs() < NEAR)
+    let off = |factor: f64| (times / factor - 1.0).abs();
+    mistakes.into_iter().filter(|(factor, _)| off(*factor) < NEAR).min_by(|a, b| off(a.0).total_cmp(&off(b.0)))
 }

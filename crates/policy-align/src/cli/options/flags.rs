@@ -228,14 +228,15 @@ impl ReadFlags {
 
 impl PrepareFlags {
     /// All options except the context, which depends on the recordings.
-    pub(crate) fn options(&self, dt: Option<f64>) -> Result<PrepareOptions, Failure> {
+    pub(crate) fn options(&self, read: &ReadFlags) -> Result<PrepareOptions, Failure> {
         let scale = self.scale.iter().map(|text| {
             let pair = text.split_once('=').and_then(|(name, factor)| Some((name.to_owned(), factor.parse().ok()?)));
             pair.ok_or_else(|| Failure::usage(format!("'{text}' is not NAME=FACTOR"), "--scale", "--scale z=10"))
         });
         Ok(PrepareOptions {
             scale: scale.collect::<Result<_, _>>()?,
-            time_step: dt,
+            time_step: read.dt,
+            time_unit_given: read.time_unit.is_some(),
             velocities: chosen(self.integration.as_deref(), "--integration")?.unwrap_or_default(),
             smoothing: self.smooth.as_deref().map_or(Ok(Smoothing::Auto), smoothing)?,
             jumps: chosen(self.jumps.as_deref(), "--jumps")?.unwrap_or_default(),

@@ -43,7 +43,7 @@ impl Check {
     pub(crate) fn run(&self, session: &Session) -> Result<Output, Failure> {
         let config = Config::of(session)?;
         let flags = config.under("read", &self.read)?;
-        let mut options = config.under("prepare", &self.prepare)?.options(flags.dt)?;
+        let mut options = config.under("prepare", &self.prepare)?.options(&flags)?;
         if let Some(path) = &self.html {
             no_input(path, &self.files)?;
         }

@@ -78,7 +78,7 @@ impl Fit {
         }
         let inputs = [&self.files[..], &self.merge].concat();
         no_input(&self.output(), &inputs)?;
-        let (mut prepare_options, fit_options) = (preparing.options(reading.dt)?, learning.options()?);
+        let (mut prepare_options, fit_options) = (preparing.options(&reading)?, learning.options()?);
         let place = || named(&self.files);
         of_learner(&self.learning, fit_options.learner)?;
         let shard = self.shard.as_deref().map(shard).transpose()?;
