@@ -75,6 +75,21 @@ def test_parameters_of_another_type_are_refused(learner: SlopeGp) -> None:
         learner.fit(positions, dt=DT)
 
 
+@pytest.mark.parametrize(
+    ("learner", "what"),
+    [
+        (PolicyAlign(folds="five"), "folds is a whole number of at least 0, not 'five'"),  # type: ignore[arg-type]
+        (AutoGp(max_rows=2.5), "max_rows is a whole number of at least 0, not 2.5"),  # type: ignore[arg-type]
+        (AutoGp(inducing=-1), "inducing is a whole number of at least 0, not -1"),
+        (AutoGp(scale=2.0), "scale is a factor for each channel by its name, not 2.0"),  # type: ignore[arg-type]
+    ],
+)
+def test_wrong_types_are_named(learner: AutoGp, what: str) -> None:
+    positions, _ = on_rails()
+    with pytest.raises(TypeError, match=what):
+        learner.fit(positions, dt=DT)
+
+
 @pytest.mark.parametrize("learner", LEARNERS)
 def test_nothing_is_said_before_fit(learner: type[SlopeGp]) -> None:
     model = learner()

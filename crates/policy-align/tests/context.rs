@@ -100,6 +100,8 @@ fn the_program_takes_a_context() {
     assert!(ran.code == Some(2) && ran.err.contains("--context"), "{}", ran.err);
     let ran = run_in(folder(), "plot goals.json -o goals.svg --context goal_x=0.5,goal_y=0.5");
     assert_eq!(ran.code, Some(0), "{}", ran.err);
+    let picture = std::fs::read_to_string(folder().join("goals.svg")).unwrap();
+    assert!(picture.contains("Policy at goal_x 0.5, goal_y 0.5"));
     let ran = run_in(folder(), "info goals.json");
     assert!(ran.out.contains("context") && ran.out.contains("goal_x"), "{}", ran.out);
     let ran = run_in(folder(), "evaluate goals.json goals.csv --require 0.01");

@@ -7,7 +7,8 @@ mod cases;
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use cases::{Case, Has, Plane, parabola};
+use cases::{Case, Has, Plane, beyond, parabola};
+use demo_gen::beyond::{ConstraintKind, PolicyKind};
 use gp::Hypothesis;
 use nalgebra::DMatrix;
 use policy_align::{
@@ -98,6 +99,20 @@ fn units_are_learnt() {
     let options = PrepareOptions { scale: vec![("y".to_owned(), 1.0)], ..PrepareOptions::default() };
     let chosen = prepare(&mixed.recordings, &options).unwrap();
     assert_eq!(fit(&chosen, &small(LearnerChoice::Auto)).unwrap().state[1].scale, 1.0);
+}
+
+/// In noise, the constraints determine units only roughly: the usual ones nearby predict better.
+#[test]
+fn usual_units_are_found_in_noise() {
+    for seed in 1..4 {
+        let recorded = beyond(PolicyKind::Swirl { dim: 3 }, ConstraintKind::Varying, 30, seed);
+        let noisy = Case::of(&recorded, 30, Has::Velocities).velocity_noise(0.05, seed);
+        let mixed = noisy.in_units(&[1.0, 1.0, 1000.0]);
+        let model = fit(&prepared(&mixed), &small(LearnerChoice::Auto)).unwrap();
+        assert_eq!(model.scales().as_slice(), [1.0, 1.0, 0.001]);
+        let error = mixed.error(model.learnt.policy(), &model.scales());
+        assert!(error < 0.03, "{seed}: {error}");
+    }
 }
 
 /// Left-out movements are predicted in the unit determined by the others.

@@ -118,7 +118,8 @@ pub fn prepare<'a>(
     notes.findings.extend(remarks::other_units(&episodes, &scales_of(&of_state)));
     repairs::labels::decide(&mut episodes, of_state.len(), &mut notes);
     if episodes.is_empty() {
-        let why = notes.left_out.first().map_or_else(String::new, |left_out| left_out.why.clone());
+        // The last cleaning left nothing.
+        let why = notes.left_out.last().map_or_else(String::new, |left_out| left_out.why.clone());
         return Err(PrepareError::NothingLeft { of: found, why });
     }
     let noise = repairs::episodes::lent(&mut episodes, samples::noise::of)?;

@@ -309,6 +309,8 @@ def preparing(
     context: str | Sequence[str],
 ) -> dict[str, Any]:
     """Converts options of preparation for the native half."""
+    if scale is not None and not isinstance(scale, dict):
+        raise TypeError(f"scale is a factor for each channel by its name, not {scale!r}: scale={{'z': 0.001}}")
     factors = list((scale or {}).items())
     return {
         "integration": integration,

@@ -214,7 +214,7 @@ class Learner(Estimator):
         fitted = self._in(context)
         found = fitted.potential(samples(X, "X", fitted.dim, type(self).__name__, lambda: self.feature_names_in_))
         if found is None:
-            raise PolicyAlignError("this policy has no potential", "potential(X)", "PolicyAlign or SlopeGp")
+            raise PolicyAlignError("this policy has no potential: it rotates", "potential(X)", "PolicyAlign learns a potential")
         return found
 
     def support(self, X: Any, *, context: Context = None) -> Floats:
@@ -459,9 +459,9 @@ class Learner(Estimator):
             "reading": getattr(self, "reading", None),
             "bandwidth": getattr(self, "bandwidth", "auto"),
             "init_d": getattr(self, "init_d", "auto"),
-            "folds": getattr(self, "folds", 5),
-            "max_rows": self.max_rows,
-            "inducing": self.inducing,
+            "folds": _count(getattr(self, "folds", 5), "folds"),
+            "max_rows": _count(self.max_rows, "max_rows"),
+            "inducing": _count(self.inducing, "inducing"),
             "robot": _text(getattr(self, "robot", None)),
             "seed": _seed(self.random_state),
         }
@@ -513,6 +513,13 @@ def _seed(random_state: Any) -> int:
     if not 0 <= seed < 2**64:
         raise PolicyAlignError(f"random_state is {seed}", "random_state", "a whole number from 0 to 2**64 - 1, or None")
     return seed
+
+
+def _count(value: Any, name: str) -> int:
+    """Checks a number of samples or folds; their limits are checked by the native half."""
+    if not hasattr(value, "__index__") or operator.index(value) < 0:
+        raise TypeError(f"{name} is a whole number of at least 0, not {value!r}")
+    return operator.index(value)
 
 
 def _channel(dim: int | str, names: list[str]) -> int:

@@ -14,8 +14,9 @@ pub(crate) fn config_file(text: &str) {
 
 fn every_table(text: &str) -> Result<(), Failure> {
     let config = Config::parsed(text, Path::new("c.toml"))?;
-    config.under("read", &ReadFlags::default())?.options()?;
-    config.under("prepare", &PrepareFlags::default())?.options(None)?;
+    let read = config.under("read", &ReadFlags::default())?;
+    read.options()?;
+    config.under("prepare", &PrepareFlags::default())?.options(&read)?;
     config.under("fit", &FitFlags::default())?.options()?;
     config.under("rollout", &RollOutFlags::default())?;
     Ok(())

@@ -23,6 +23,17 @@ pub(crate) fn context_flag(model: &Model) -> String {
     if values.is_empty() { String::new() } else { format!(" --context {}", value_word(&values.join(","))) }
 }
 
+/// The context of a model's policy, such as `goal_x 0.3, goal_y 0.2`, for up to two channels; `None` without a context.
+pub(crate) fn at_context(model: &Model) -> Option<String> {
+    let values = model.context.iter().zip(&model.chosen_context);
+    let words: Vec<String> = values.map(|(channel, value)| format!("{} {}", channel.name, short(*value))).collect();
+    match words.len() {
+        0 => None,
+        1 | 2 => Some(words.join(", ")),
+        _ => Some("one context".to_owned()),
+    }
+}
+
 /// Description of the learner.
 pub(crate) fn learner(model: &Model) -> String {
     match &model.learnt {

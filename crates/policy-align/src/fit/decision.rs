@@ -90,7 +90,7 @@ fn found((reading, free): (Hypothesis, Option<FreeRows>), takes_slope: bool) -> 
         return format!("constraints detected, but {} of the samples move freely", percent(free.share));
     }
     let found = match reading {
-        Hypothesis::Free if takes_slope => "no constraints detected, and movements descend a potential",
+        Hypothesis::Free if takes_slope => "few or no constraints detected, and directions predict better",
         Hypothesis::Free => "no constraints detected",
         Hypothesis::Constrained => "constraints detected",
         Hypothesis::Ambiguous => "free or constrained, both readings fit",

@@ -80,23 +80,19 @@ pub fn fit_with(
     progress.begin(1, steps, "learning with and without constraints")?;
     let readings = learn(&rows, options)?;
     let weighed = inertia::weighed(prepared, &rows, &readings, (robot.as_ref(), options))?;
-    let rescaled = match &weighed {
-        Some(_) => None,
-        None => units::learnt(prepared, &rows, &readings, options)?,
-    };
     let metric = weighed.as_ref().map(|weighed| weighed.decision.clone());
-    let (prepared, rows, readings) = match (weighed, &rescaled) {
-        (Some(inertia::Weighed { rows, readings, .. }), _) => (prepared, rows, readings),
-        (None, Some(rescaled)) => {
-            let again = |prepared: &Prepared| {
-                let (rows, _) = rows_of(prepared)?;
-                let readings = learn(&rows, options)?;
-                Ok((rows, readings))
-            };
-            units::better((prepared, rescaled), (rows, readings), again)?
-        }
-        (None, None) => (prepared, rows, readings),
+    let (in_units, rows, readings) = if let Some(inertia::Weighed { rows, readings, .. }) = weighed {
+        (None, rows, readings)
+    } else {
+        let candidates = units::candidates(prepared, &rows, &readings, options)?;
+        let again = |prepared: &Prepared| {
+            let (rows, _) = rows_of(prepared)?;
+            let readings = learn(&rows, options)?;
+            Ok((rows, readings))
+        };
+        units::best(prepared, candidates, (rows, readings), again)?
     };
+    let prepared = in_units.as_ref().unwrap_or(prepared);
     let mut decisions: Vec<Decision> = prepared.decisions.iter().cloned().chain(metric).collect();
     decisions.extend(links.decision(&readings));
     decisions.extend(digests_decision(prepared, digests, &readings));

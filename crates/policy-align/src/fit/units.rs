@@ -1,7 +1,9 @@
-//! Learns the unit of each channel if the constraints imply another than the recorded one.
+//! Finds the unit of each channel if the constraints imply another than the recorded one.
+
+use std::f64::consts::PI;
 
 use gp::{AutoFit, Hypothesis, LearntScales, PushTest, Rows, SlopeGp};
-use motion::Decision;
+use motion::{Decision, standard_deviation, upper_median};
 use nalgebra::DVector;
 use prepare::numbers::squared_error;
 use rand::SeedableRng;
@@ -11,13 +13,34 @@ use super::decision::decision;
 use super::options::{FitOptions, LearnerChoice};
 use crate::{FitError, Prepared};
 
-/// The movements in the units implied by the constraints; `None` if the recorded units are as good or the user chose one.
-pub(super) fn learnt(
+/// Ratios of usual units: metres, centimetres and millimetres; radians and degrees.
+const LENGTHS: [f64; 3] = [1.0, 100.0, 1000.0];
+const ANGLES: [f64; 2] = [1.0, 180.0 / PI];
+/// Usual units are also tried if the logarithms of their factors differ by less from those that were learnt: noise blurs learnt units.
+const BLURRED: f64 = 1.0;
+/// So are those that make the spreads of the channels similar, to such a logarithm, if they differ from those recorded by this factor: a
+/// joint that moves no constraint has no learnt unit.
+const SIMILAR: f64 = 2.0;
+const MIXED: f64 = 50.0;
+/// If no units are learnt, usual ones must leave at most this share of the left-out error.
+const LEFT: f64 = 0.5;
+
+/// The movements in other units.
+pub(super) struct Candidate {
+    prepared: Prepared,
+    /// Factor on each channel, (n).
+    factors: DVector<f64>,
+    /// Maximum left-out error, as a share of that in the best units so far.
+    left: f64,
+}
+
+/// The movements in units that the constraints imply or that are usual; none if the user chose the units, or if they hardly matter.
+pub(super) fn candidates(
     prepared: &Prepared,
     rows: &Rows,
     readings: &AutoFit,
     options: &FitOptions,
-) -> Result<Option<Prepared>, FitError> {
+) -> Result<Vec<Candidate>, FitError> {
     let chosen = prepared.decisions.iter().any(|decision| decision.flag == "--scale");
     let reading = options.reading.unwrap_or(readings.reading());
     let constrained = !matches!(reading, Hypothesis::Free | Hypothesis::TooFew);
@@ -31,41 +54,80 @@ pub(super) fn learnt(
         || report.is_nearly_exact()
         || options.learner == LearnerChoice::Direct
     {
-        return Ok(None);
+        return Ok(Vec::new());
     }
     let family = report.family;
     let (families, push_test) = (vec![family], PushTest::Fit);
     let gp = SlopeGp { families, push_test, max_rows: options.max_rows, ..SlopeGp::default() };
-    let Some(scales) = gp.learn_scales(rows, &mut ChaCha8Rng::seed_from_u64(options.seed))? else { return Ok(None) };
-    let factors = DVector::from_iterator(scales.factors.len(), scales.factors.iter().map(|&factor| in_short(factor)));
-    let mut rescaled = prepared.rescaled(&factors).map_err(|error| super::recorded_rows::cleaning(&error))?;
-    if !rescaled.context.is_empty() {
-        rescaled = super::context::comparable(&rescaled, options)?;
+    let learnt = gp.learn_scales(rows, &mut ChaCha8Rng::seed_from_u64(options.seed))?;
+    let learnt = learnt.map(|LearntScales { factors, .. }| DVector::from_vec(factors).map(in_short));
+    let states = rows.states();
+    let spread = |axis| standard_deviation(states.row(axis).iter().copied());
+    let alike = DVector::from_fn(prepared.state.len(), |axis, _| spread(axis).recip());
+    let similar = usual_units_near(&alike, SIMILAR).into_iter().filter(|usual| usual.max() > MIXED * usual.min());
+    let left = if learnt.is_some() { 1.0 } else { LEFT };
+    let near = learnt.iter().flat_map(|learnt| usual_units_near(learnt, BLURRED));
+    let factors: Vec<DVector<f64>> = near.chain(similar).chain(learnt.clone()).collect();
+    let mut distinct = vec![DVector::repeat(prepared.state.len(), 1.0)];
+    for factors in factors {
+        if !distinct.contains(&factors) {
+            distinct.push(factors);
+        }
     }
-    rescaled.decisions.extend(decisions(prepared, &scales, &factors));
-    Ok(Some(rescaled))
+    let in_units = |factors: DVector<f64>| {
+        let mut rescaled = prepared.rescaled(&factors).map_err(|error| super::recorded_rows::cleaning(&error))?;
+        if !rescaled.context.is_empty() {
+            rescaled = super::context::comparable(&rescaled, options)?;
+        }
+        Ok(Candidate { prepared: rescaled, factors, left })
+    };
+    // The first are the recorded ones.
+    distinct.into_iter().skip(1).map(in_units).collect()
 }
 
 /// Largest number of rows for which a fit is kept while another is made.
 const KEPT: usize = 20_000;
 
-/// The existing fit in the `recorded` units or a new one in the `learnt` units, whichever predicts left-out movements better. The
-/// search for units uses less information than a whole fit, and rotating constraints mislead it.
-pub(super) fn better<'p>(
-    (recorded, learnt): (&'p Prepared, &'p Prepared),
+/// The `recorded` movements with their fit, or those of a candidate with a new one, whichever predicts left-out movements best. The search
+/// for units uses less information than a whole fit, and rotating constraints mislead it. `None` stands for the recorded units.
+pub(super) fn best(
+    recorded: &Prepared,
+    candidates: Vec<Candidate>,
     (rows, readings): (Rows, AutoFit),
     fit: impl Fn(&Prepared) -> Result<(Rows, AutoFit), FitError>,
-) -> Result<(&'p Prepared, Rows, AutoFit), FitError> {
-    let as_recorded = readings.slope().report().r_squared;
-    // Two large fits would take twice the memory.
-    let kept = (rows.len() <= KEPT).then_some((rows, readings));
-    let (rows, readings) = fit(learnt)?;
-    if readings.slope().report().r_squared > as_recorded {
-        return Ok((learnt, rows, readings));
+) -> Result<(Option<Prepared>, Rows, AutoFit), FitError> {
+    let error = |readings: &AutoFit| 1.0 - readings.slope().report().r_squared;
+    let (as_recorded, all) = (error(&readings), rows.len());
+    let (mut least, mut units, mut kept) = (as_recorded, None, Some((rows, readings)));
+    for Candidate { mut prepared, factors, left } in candidates {
+        if all > KEPT {
+            // Two large fits would take twice the memory.
+            kept = None;
+        }
+        let (rows, readings) = fit(&prepared)?;
+        let now = error(&readings);
+        if now < left * least {
+            prepared.decisions.extend(decisions(recorded, &factors, (as_recorded, now)));
+            (least, units, kept) = (now, Some(prepared), Some((rows, readings)));
+        }
     }
-    drop((rows, readings));
-    let (rows, readings) = kept.map_or_else(|| fit(recorded), Ok)?;
-    Ok((recorded, rows, readings))
+    let (rows, readings) = kept.map_or_else(|| fit(units.as_ref().unwrap_or(recorded)), Ok)?;
+    Ok((units, rows, readings))
+}
+
+/// The factors rounded to ratios of lengths or of angles, the first being 1, if no logarithm changes by `within` or more.
+fn usual_units_near(factors: &DVector<f64>, within: f64) -> Vec<DVector<f64>> {
+    let reference = upper_median(factors.as_slice().to_vec()).unwrap_or(1.0);
+    let rounded = |units: &[f64]| {
+        let ratios: Vec<f64> = units.iter().copied().chain(units.iter().map(|unit| unit.recip())).collect();
+        let nearest = |factor: &f64| {
+            let off = |ratio: &f64| (factor / reference / ratio).ln().abs();
+            ratios.iter().copied().min_by(|a, b| off(a).total_cmp(&off(b))).filter(|ratio| off(ratio) < within)
+        };
+        let rounded = DVector::from_vec(factors.iter().map(nearest).collect::<Option<Vec<_>>>()?);
+        Some((&rounded / rounded[0]).map(in_short))
+    };
+    [&LENGTHS[..], &ANGLES].into_iter().filter_map(rounded).collect()
 }
 
 /// Rounds to four significant digits, so that a user can type the factor.
@@ -73,8 +135,7 @@ fn in_short(factor: f64) -> f64 {
     format!("{factor:.3e}").parse().expect("a number that was printed")
 }
 
-fn decisions(prepared: &Prepared, scales: &LearntScales, factors: &DVector<f64>) -> Vec<Decision> {
-    let (before, after) = scales.left_out;
+fn decisions(prepared: &Prepared, factors: &DVector<f64>, (before, after): (f64, f64)) -> Vec<Decision> {
     let why = format!(
         "constraints are at right angles in this unit: error relative to the motion {}, as recorded {}",
         squared_error(after),

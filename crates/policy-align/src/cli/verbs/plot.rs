@@ -6,7 +6,7 @@ use policy_align::{Model, spread_starts};
 use text::quoted;
 
 use crate::cli::context::in_context;
-use crate::cli::describe::context_flag;
+use crate::cli::describe::{at_context, context_flag};
 use crate::cli::failure::Failure;
 use crate::cli::given::{flag_words, no_input, value_word};
 use crate::cli::lines::{Lines, list, short};
@@ -46,10 +46,10 @@ pub(crate) struct Plot {
     /// Channels across and up [default: the first two]
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     dims: Vec<String>,
-    /// Words above it [default: the model's name]
+    /// Words above it [default: the model's name, or the context]
     #[arg(long, value_name = "TEXT")]
     title: Option<String>,
-    /// Pixels across and up
+    /// Pixels across and up; a PNG has twice as many
     #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "660x680", value_parser = size)]
     size: (f64, f64),
     /// Recordings to plot
@@ -100,10 +100,10 @@ impl Plot {
             let start = DVector::from_vec(numbers(from, "--rollout")?);
             Ok(followed(&roll_out, &model, &start, from)?.states)
         });
-        let title = self
-            .title
-            .clone()
-            .unwrap_or_else(|| format!("Policy of {} (grey: outside the demonstrations)", base_name(&self.model)));
+        let title = self.title.clone().unwrap_or_else(|| match at_context(&model) {
+            Some(context) => format!("Policy at {context} (grey: not demonstrated)"),
+            None => format!("Policy of {} (grey: outside the demonstrations)", base_name(&self.model)),
+        });
         let followed = paths.collect::<Result<_, Failure>>()?;
         let picture = Picture { title, model: &model, dims, demonstrated, held, followed };
         write(&self.output, &draw(&self.output, &picture, self.size)?)?;
