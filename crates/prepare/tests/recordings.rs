@@ -429,6 +429,15 @@ fn remarks() {
         episode.velocities = None;
     }));
     assert_eq!(verdict(&mixed, "channel y varies"), Verdict::Doubtful);
+    let joints = ["a", "b", "c", "d", "e"];
+    let mixed = prepared(&moving(&joints, |k, t| {
+        let (phase, degrees) = (k as f64, |joint: usize| if joint < 2 { 57.3 } else { 1.0 });
+        let at = |joint: usize| degrees(joint) * (t + phase * (1.0 + joint as f64)).sin();
+        let rate = |joint: usize| degrees(joint) * (t + phase * (1.0 + joint as f64)).cos();
+        (DVector::from_fn(5, |joint, _| at(joint)), DVector::from_fn(5, |joint, _| rate(joint)))
+    }));
+    assert_eq!(verdict(&mixed, "channels a, b vary up to"), Verdict::Doubtful);
+    assert!(mixed.findings.iter().any(|finding| finding.next.contains("--degrees a,b or --scale a=FACTOR,b=FACTOR")));
     // The mean of equal numbers may be another number.
     let constant = prepared(&changed(|episode| {
         episode.positions.row_mut(1).fill(0.1);

@@ -57,11 +57,19 @@ fn mixed_units(spreads: &[f64], state: &[StateChannel]) -> Option<Finding> {
     sorted.sort_by(f64::total_cmp);
     let (&largest, others) = sorted.split_last()?;
     let times = largest / others.get(others.len() / 2)?;
-    let name = spreads.iter().position(|&spread| spread == largest).map_or("", |at| state[at].name.as_str());
+    // The channels nearer to the largest spread than to that of most others.
+    let wide = spreads.iter().zip(state).filter(|(spread, _)| **spread * times.sqrt() >= largest);
+    let names: Vec<&str> = wide.map(|(_, channel)| channel.name.as_str()).collect();
+    let vary = match &names[..] {
+        [name] => format!("channel {name} varies {times:.0} times"),
+        names => format!("channels {} vary up to {times:.0} times", names.join(", ")),
+    };
+    let scales: Vec<String> = names.iter().map(|name| format!("{name}=FACTOR")).collect();
+    let (degrees, scales) = (names.join(","), scales.join(","));
     (times >= MIXED).then(|| Finding {
         verdict: Verdict::Doubtful,
-        what: format!("channel {name} varies {times:.0} times as much as the others: different unit (degrees, millimetres)?"),
-        next: format!("all channels need one unit, because constraints act at right angles: --degrees {name} or --scale {name}=FACTOR"),
+        what: format!("{vary} as much as the others: different unit (degrees, millimetres)?"),
+        next: format!("all channels need one unit, because constraints act at right angles: --degrees {degrees} or --scale {scales}"),
     })
 }
 

@@ -21,7 +21,7 @@ const TIME_UNITS: [&str; 12] =
 
 pub(super) fn is_one_of(known: &[&str], name: &str) -> bool {
     let name = base(name);
-    known.contains(&name.as_str())
+    known.contains(&name.as_str()) || known.contains(&name.replace(' ', "_").as_str())
 }
 
 pub(crate) fn is_time(name: &str) -> bool {
