@@ -116,7 +116,9 @@ pub(crate) fn remark(demonstrations: &Demonstrations, context: &[StateChannel], 
     } else {
         notes.found(
             Verdict::Good,
-            format!("{shown} in {episodes}: errors on left-out movements are those at new contexts"),
+            format!(
+                "{shown} in {episodes}: errors on left-out movements, along their motion, are those at new contexts"
+            ),
             "nothing to do",
         );
     }
