@@ -28,8 +28,8 @@ use rand_chacha::ChaCha8Rng;
 
 use crate::channel_joints::joints_in_degrees;
 use crate::trust::{
-    AlignedNumbers, CommonPlane, TrustNumbers, VerdictInput, along_the_motion, common_surface, judge, pushed,
-    share_leaving, share_unknown, wall,
+    AlignedNumbers, CommonPlane, TrustNumbers, VerdictInput, along_the_motion, common_point, common_surface, judge,
+    pushed, share_leaving, share_unknown, wall,
 };
 use crate::{DataSummary, Decision, Finding, FitError, Learnt, MadeBy, Model, PredictedSpeed, Prepared};
 use aligning::AlignedFit;
@@ -124,6 +124,7 @@ pub fn fit_with(
     findings.extend(robot.and_then(|robot| joints_in_degrees(&robot, &prepared.state)));
     findings.extend(plane(prepared, &numbers));
     findings.extend(common_surface(&rows, &prepared.state, &numbers));
+    findings.extend(common_point(&prepared.demonstrations, &prepared.state));
     let gap = if takes_slope(&readings, options.learner) { numbers.gap } else { 0.0 };
     findings.extend(wall(&rows, prepared, gap));
     let trust = judge(VerdictInput {

@@ -20,4 +20,4 @@ pub(crate) use judge::{VerdictInput, judge};
 pub use numbers::{AlignedNumbers, TrustNumbers};
 pub(crate) use pushes::pushed;
 pub use report::Trust;
-pub(crate) use surfaces::{CommonPlane, common_surface, wall};
+pub(crate) use surfaces::{CommonPlane, common_point, common_surface, wall};

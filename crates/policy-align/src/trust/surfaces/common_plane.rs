@@ -80,19 +80,8 @@ mod tests {
     use rand::{RngExt, SeedableRng};
     use rand_chacha::ChaCha8Rng;
 
+    use super::super::channels;
     use super::*;
-
-    fn channels() -> Vec<StateChannel> {
-        let channel = |name: &str| StateChannel {
-            name: name.to_owned(),
-            unit: Some("m".to_owned()),
-            scale: 1.0,
-            low: -1.0,
-            high: 1.0,
-            median: 0.0,
-        };
-        ["x", "y", "z"].map(channel).to_vec()
-    }
 
     /// Circles by hand in the plane with this normal and level, with noise of positions.
     fn circled(normal: &DVector<f64>, level: f64, noise: f64, rng: &mut ChaCha8Rng) -> Demonstrations {

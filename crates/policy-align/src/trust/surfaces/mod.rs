@@ -1,11 +1,13 @@
-//! Surfaces that no movement crosses, found without a policy. A constraint common to all movements may hide the policy across them.
+//! Surfaces that no movement crosses, and points that all lead through, found without a policy. A constraint common to all movements may hide the policy across them.
 
 mod common_plane;
+mod common_point;
 mod common_surface;
 mod quadratics;
 mod wall;
 
 pub(crate) use common_plane::CommonPlane;
+pub(crate) use common_point::common_point;
 pub(crate) use common_surface::common_surface;
 pub(crate) use wall::wall;
 
@@ -42,4 +44,18 @@ fn equation(normal: &DVector<f64>, level: f64, state: &[StateChannel]) -> String
         _ => String::new(),
     };
     format!("{} = {}{unit}", parts(normal, state), short(level))
+}
+
+/// Channels for tests, in metres.
+#[cfg(test)]
+fn channels() -> Vec<StateChannel> {
+    let channel = |name: &str| StateChannel {
+        name: name.to_owned(),
+        unit: Some("m".to_owned()),
+        scale: 1.0,
+        low: -1.0,
+        high: 1.0,
+        median: 0.0,
+    };
+    ["x", "y", "z"].map(channel).to_vec()
 }
