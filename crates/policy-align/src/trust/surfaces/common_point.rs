@@ -19,13 +19,15 @@ const FEW: usize = 5;
 const MEET: f64 = 0.05;
 /// Least mean square of a direction across the lines; along parallel lines, the point is undetermined.
 const ACROSS: f64 = 0.02;
-/// If a smaller share of the ways leads away from the point, or towards it, it is the goal or the start …
+/// If a smaller share of the ways leads towards the point, it is the start. If a smaller share leads away from it, it is the goal …
 const ONE_WAY: f64 = 0.02;
 /// … unless at least this share of the movements comes to rest before it or beyond it: at this share of its first distance, and in the last
 /// tenth of its time with less than this share of its mean speed.
 const ELSEWHERE: f64 = 0.1;
 const SHORT: f64 = 0.2;
 const SLOW: f64 = 0.3;
+/// A smaller coordinate of the point, relative to the usual length, is 0.
+const ZERO: f64 = 1e-6;
 
 /// The line of a straight movement.
 struct Line {
@@ -106,12 +108,15 @@ pub(crate) fn common_point(demonstrations: &Demonstrations, state: &[StateChanne
     let off: f64 = lines.iter().map(|line| (&line.across * (&point - &line.mean)).norm_squared()).sum();
     let far: f64 = lines.iter().map(|line| (&point - &line.mean).norm_squared()).sum();
     let (towards, away) = lines.iter().map(|line| line.ways(&point)).fold((0.0, 0.0), |a, b| (a.0 + b.0, a.1 + b.1));
-    let one_way = towards.min(away) < ONE_WAY * (towards + away);
+    let is_start = towards < ONE_WAY * (towards + away);
     let elsewhere = lines.iter().filter(|line| line.rests_elsewhere(&point)).count() as f64;
-    if off > MEET.powi(2) * far || one_way && (elsewhere < ELSEWHERE * count || towards == 0.0) {
+    let is_goal = away < ONE_WAY * (towards + away) && elsewhere < ELSEWHERE * count;
+    if off > MEET.powi(2) * far || is_start || is_goal {
         return None;
     }
-    let place = point.iter().zip(state).map(|(c, channel)| format!("{} {}", channel.name, short(c / channel.scale)));
+    let exact = |c: f64| if c.abs() < ZERO * usual { 0.0 } else { c };
+    let place = point.iter().zip(state);
+    let place = place.map(|(c, channel)| format!("{} {}", channel.name, short(exact(*c) / channel.scale)));
     Some(Finding {
         verdict: Verdict::Doubtful,
         what: format!(
@@ -132,15 +137,15 @@ mod tests {
     use super::super::channels;
     use super::*;
 
-    /// Movements of π(x) = −x, along lines through `hub` or free, with noise of positions.
-    fn movements(hub: Option<&DVector<f64>>, noise: f64, rng: &mut ChaCha8Rng) -> Demonstrations {
+    /// Movements of π(x) = −x, or of π(x) = x if `out`, along lines through `hub` or free, with noise of positions.
+    fn movements(hub: Option<&DVector<f64>>, out: bool, noise: f64, rng: &mut ChaCha8Rng) -> Demonstrations {
         let movement = |_| {
             let start = DVector::from_fn(3, |_, _| rng.random_range(-2.0..2.0f64));
             let rail = hub.map(|hub| (&start - hub).normalize());
             let mut x = start;
             let states = (0..80).map(|_| {
                 let velocity = rail.as_ref().map_or_else(|| -&x, |rail| -rail * rail.dot(&x));
-                x += velocity * 0.05;
+                x += velocity * if out { -0.02 } else { 0.05 };
                 &x + DVector::from_fn(3, |_, _| noise * rng.random_range(-1.7..1.7))
             });
             Trajectory::new(DMatrix::from_columns(&states.collect::<Vec<_>>()), 0.05).unwrap()
@@ -149,16 +154,18 @@ mod tests {
     }
 
     proptest! {
-        /// Rails through a point are named with the point; free straight movements to the goal are not.
+        /// Rails through a point are named with the point; free straight movements to a goal or from a start are not.
         #[test]
         fn rails_through_a_point_are_named(seed in any::<u64>(), noise in 0.0..0.003f64) {
             let mut rng = ChaCha8Rng::seed_from_u64(seed);
             let hub = DVector::from_fn(3, |_, _| rng.random_range(0.6..1.0f64));
-            let found = common_point(&movements(Some(&hub), noise, &mut rng), &channels());
+            let found = common_point(&movements(Some(&hub), false, noise, &mut rng), &channels());
             let what = found.map(|found| found.what).unwrap_or_default();
             let x: f64 = what.split("(x ").nth(1).and_then(|rest| rest.split(',').next()?.parse().ok()).unwrap_or(f64::NAN);
             prop_assert!((x - hub[0]).abs() < 0.1, "{what}: {hub}");
-            prop_assert!(common_point(&movements(None, noise, &mut rng), &channels()).is_none());
+            for out in [false, true] {
+                prop_assert!(common_point(&movements(None, out, noise, &mut rng), &channels()).is_none());
+            }
         }
     }
 }
