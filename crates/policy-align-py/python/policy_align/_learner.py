@@ -214,7 +214,7 @@ class Learner(Estimator):
         fitted = self._in(context)
         found = fitted.potential(samples(X, "X", fitted.dim, type(self).__name__, lambda: self.feature_names_in_))
         if found is None:
-            raise PolicyAlignError("this policy has no potential: it rotates", "potential(X)", "PolicyAlign learns a potential")
+            raise PolicyAlignError("this policy has no potential", "potential(X)", "PolicyAlign learns a potential")
         return found
 
     def support(self, X: Any, *, context: Context = None) -> Floats:

@@ -90,7 +90,7 @@ pub fn fit_with(
             let readings = learn(&rows, options)?;
             Ok((rows, readings))
         };
-        units::best(prepared, candidates, (rows, readings), again)?
+        units::best(prepared, candidates, options, (rows, readings), again)?
     };
     let prepared = in_units.as_ref().unwrap_or(prepared);
     let mut decisions: Vec<Decision> = prepared.decisions.iter().cloned().chain(metric).collect();

@@ -25,22 +25,22 @@ const MIXED: f64 = 50.0;
 /// If no units are learnt, usual ones must leave at most this share of the left-out error.
 const LEFT: f64 = 0.5;
 
-/// The movements in other units.
-pub(super) struct Candidate {
-    prepared: Prepared,
-    /// Factor on each channel, (n).
-    factors: DVector<f64>,
+/// Units that are tried.
+#[derive(Default)]
+pub(super) struct Candidates {
+    /// Factor on each channel, (n) each.
+    factors: Vec<DVector<f64>>,
     /// Maximum left-out error, as a share of that in the best units so far.
     left: f64,
 }
 
-/// The movements in units that the constraints imply or that are usual; none if the user chose the units, or if they hardly matter.
+/// Units that the constraints imply or that are usual; none if the user chose the units, or if they hardly matter.
 pub(super) fn candidates(
     prepared: &Prepared,
     rows: &Rows,
     readings: &AutoFit,
     options: &FitOptions,
-) -> Result<Vec<Candidate>, FitError> {
+) -> Result<Candidates, FitError> {
     let chosen = prepared.decisions.iter().any(|decision| decision.flag == "--scale");
     let reading = options.reading.unwrap_or(readings.reading());
     let constrained = !matches!(reading, Hypothesis::Free | Hypothesis::TooFew);
@@ -54,7 +54,7 @@ pub(super) fn candidates(
         || report.is_nearly_exact()
         || options.learner == LearnerChoice::Direct
     {
-        return Ok(Vec::new());
+        return Ok(Candidates::default());
     }
     let family = report.family;
     let (families, push_test) = (vec![family], PushTest::Fit);
@@ -67,39 +67,38 @@ pub(super) fn candidates(
     let similar = usual_units_near(&alike, SIMILAR).into_iter().filter(|usual| usual.max() > MIXED * usual.min());
     let left = if learnt.is_some() { 1.0 } else { LEFT };
     let near = learnt.iter().flat_map(|learnt| usual_units_near(learnt, BLURRED));
-    let factors: Vec<DVector<f64>> = near.chain(similar).chain(learnt.clone()).collect();
-    let mut distinct = vec![DVector::repeat(prepared.state.len(), 1.0)];
-    for factors in factors {
-        if !distinct.contains(&factors) {
+    let recorded = DVector::repeat(prepared.state.len(), 1.0);
+    let mut distinct: Vec<DVector<f64>> = Vec::new();
+    for factors in near.chain(similar).chain(learnt.clone()) {
+        if factors != recorded && !distinct.contains(&factors) {
             distinct.push(factors);
         }
     }
-    let in_units = |factors: DVector<f64>| {
-        let mut rescaled = prepared.rescaled(&factors).map_err(|error| super::recorded_rows::cleaning(&error))?;
-        if !rescaled.context.is_empty() {
-            rescaled = super::context::comparable(&rescaled, options)?;
-        }
-        Ok(Candidate { prepared: rescaled, factors, left })
-    };
-    // The first are the recorded ones.
-    distinct.into_iter().skip(1).map(in_units).collect()
+    Ok(Candidates { factors: distinct, left })
+}
+
+fn rescaled(prepared: &Prepared, factors: &DVector<f64>, options: &FitOptions) -> Result<Prepared, FitError> {
+    let rescaled = prepared.rescaled(factors).map_err(|error| super::recorded_rows::cleaning(&error))?;
+    if rescaled.context.is_empty() { Ok(rescaled) } else { super::context::comparable(&rescaled, options) }
 }
 
 /// Largest number of rows for which a fit is kept while another is made.
 const KEPT: usize = 20_000;
 
-/// The `recorded` movements with their fit, or those of a candidate with a new one, whichever predicts left-out movements best. The search
-/// for units uses less information than a whole fit, and rotating constraints mislead it. `None` stands for the recorded units.
+/// The `recorded` movements with their fit, or those in a candidate's units with a new one, whichever predicts left-out movements best.
+/// The search for units uses less information than a whole fit, and rotating constraints mislead it. `None` stands for the recorded units.
 pub(super) fn best(
     recorded: &Prepared,
-    candidates: Vec<Candidate>,
+    Candidates { factors, left }: Candidates,
+    options: &FitOptions,
     (rows, readings): (Rows, AutoFit),
     fit: impl Fn(&Prepared) -> Result<(Rows, AutoFit), FitError>,
 ) -> Result<(Option<Prepared>, Rows, AutoFit), FitError> {
     let error = |readings: &AutoFit| 1.0 - readings.slope().report().r_squared;
     let (as_recorded, all) = (error(&readings), rows.len());
     let (mut least, mut units, mut kept) = (as_recorded, None, Some((rows, readings)));
-    for Candidate { mut prepared, factors, left } in candidates {
+    for factors in factors {
+        let mut prepared = rescaled(recorded, &factors, options)?;
         if all > KEPT {
             // Two large fits would take twice the memory.
             kept = None;

@@ -182,9 +182,9 @@ impl Span<'_> {
     fn mismatch(&self, half_samples: isize) -> Option<f64> {
         let Span { episode, from, steps } = *self;
         let velocities = episode.velocities.as_ref()?;
-        let mut difference = self.rate();
+        let (mut difference, seconds) = (self.rate(), self.seconds());
         for step in from..from + steps {
-            let share = episode.times.seconds(step, step + 1) / self.seconds();
+            let share = episode.times.seconds(step, step + 1) / seconds;
             // The middle of the step is half a sample after its first sample.
             let at = (2 * step + 1).saturating_add_signed(half_samples);
             for sample in [at / 2, at.div_ceil(2)] {

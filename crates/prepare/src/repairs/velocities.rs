@@ -76,7 +76,7 @@ pub(crate) fn decide(
         );
         return Agreement::None;
     }
-    if fit.factors.iter().all(|factor| (1.0 / AGREE..AGREE).contains(factor)) {
+    if fit.agree(1.0) {
         let made = made_of_positions(episodes);
         let (value, why) = match made {
             Some(Agreement::Differences) => ("from positions", "those recorded are differences of them"),
@@ -113,6 +113,11 @@ struct Steps {
 }
 
 impl Steps {
+    /// Whether velocities agree with the steps if time is divided by `times`.
+    fn agree(&self, times: f64) -> bool {
+        self.factors.iter().all(|factor| (1.0 / AGREE..AGREE).contains(&(factor * times)))
+    }
+
     fn of(episodes: &[Episode], noise: &Noise) -> Self {
         let pairs: Vec<Part> = episodes.iter().flat_map(parts).collect();
         let dim = episodes[0].positions.nrows();
@@ -187,8 +192,7 @@ fn made_of_positions(episodes: &[Episode]) -> Option<Agreement> {
 /// the steps.
 fn in_seconds(episodes: &mut [Episode], fit: &Steps, notes: &mut Notes) -> bool {
     let step = usual_step(episodes).unwrap_or(1.0);
-    let agree = |times: f64| fit.factors.iter().all(|factor| (1.0 / AGREE..AGREE).contains(&(factor * times)));
-    let Some(unit) = UNITS.into_iter().find(|unit| step > SLOW && agree(unit.a_second)) else { return false };
+    let Some(unit) = UNITS.into_iter().find(|unit| step > SLOW && fit.agree(unit.a_second)) else { return false };
     for episode in episodes.iter_mut() {
         episode.times = episode.times.divided_by(unit.a_second);
     }

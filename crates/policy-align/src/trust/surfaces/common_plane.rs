@@ -4,7 +4,7 @@ use motion::{Demonstrations, upper_median};
 use nalgebra::{DMatrix, DVector};
 use prepare::numbers::short;
 
-use super::{as_recorded, equation, parts};
+use super::{add_scatter, as_recorded, equation, parts};
 use crate::{Finding, StateChannel, Verdict};
 
 /// Largest ratio of the thickness to the next larger extent.
@@ -34,8 +34,7 @@ impl CommonPlane {
         let freedom = demonstrations.n_samples().checked_sub(movements.len() + dim)?;
         let mut scatter = DMatrix::zeros(dim, dim);
         for movement in movements {
-            let mean = movement.states().column_mean();
-            movement.states().column_iter().for_each(|x| scatter.syger(1.0, &(x - &mean), &(x - &mean), 1.0));
+            add_scatter(&mut scatter, movement.states());
         }
         scatter.fill_upper_triangle_with_lower_triangle();
         let eigen = scatter.symmetric_eigen();

@@ -4,6 +4,7 @@ use motion::{Demonstrations, Trajectory, upper_median};
 use nalgebra::{DMatrix, DVector};
 use prepare::numbers::short;
 
+use super::{add_scatter, some_of};
 use crate::{Finding, StateChannel, Verdict};
 
 /// Largest standard deviation of a straight movement's positions across its line, as a share of that along it.
@@ -45,11 +46,8 @@ struct Line {
 impl Line {
     fn of(movement: &Trajectory) -> Option<Line> {
         let (n, count) = (movement.states().nrows(), movement.n_samples());
-        let chosen: Vec<usize> = (0..count).step_by(count.div_ceil(SAMPLES)).collect();
-        let some = movement.states().select_columns(&chosen);
-        let mean = some.column_mean();
         let mut scatter = DMatrix::zeros(n, n);
-        some.column_iter().for_each(|x| scatter.syger(1.0, &(x - &mean), &(x - &mean), 1.0));
+        let mean = add_scatter(&mut scatter, &movement.states().select_columns(&some_of(count, SAMPLES)));
         scatter.fill_upper_triangle_with_lower_triangle();
         let eigen = scatter.symmetric_eigen();
         let largest = eigen.eigenvalues.imax();
@@ -65,17 +63,21 @@ impl Line {
         (along > 0.0 && straight).then_some(Line { mean, across, ends, last_speed, direction })
     }
 
+    /// The first and last positions along d, relative to the point.
+    fn ends_from(&self, point: &DVector<f64>) -> (f64, f64) {
+        let at = self.direction.dot(&(point - &self.mean));
+        (self.ends.0 - at, self.ends.1 - at)
+    }
+
     /// Whether the movement comes to rest before the point or beyond it.
     fn rests_elsewhere(&self, point: &DVector<f64>) -> bool {
-        let at = self.direction.dot(&(point - &self.mean));
-        let (first, last) = ((self.ends.0 - at).abs(), (self.ends.1 - at).abs());
-        last > SHORT * first && self.last_speed < SLOW
+        let (first, last) = self.ends_from(point);
+        last.abs() > SHORT * first.abs() && self.last_speed < SLOW
     }
 
     /// How far the movement approaches the point, and how far it leaves it, along the line.
     fn ways(&self, point: &DVector<f64>) -> (f64, f64) {
-        let at = self.direction.dot(&(point - &self.mean));
-        let (first, last) = (self.ends.0 - at, self.ends.1 - at);
+        let (first, last) = self.ends_from(point);
         if first * last < 0.0 {
             return (first.abs(), last.abs());
         }

@@ -11,16 +11,22 @@ pub(crate) use common_point::common_point;
 pub(crate) use common_surface::common_surface;
 pub(crate) use wall::wall;
 
-use gp::Rows;
-use nalgebra::DVector;
+use nalgebra::{DMatrix, DVector};
 use prepare::numbers::short;
 use prepare::sum_of_parts;
 
 use crate::StateChannel;
 
-/// At most `most` rows, evenly spread over all.
-fn some_of(rows: &Rows, most: usize) -> Vec<usize> {
-    (0..rows.len()).step_by(rows.len().div_ceil(most).max(1)).collect()
+/// At most `most` of `count` indices, evenly spread over all.
+fn some_of(count: usize, most: usize) -> Vec<usize> {
+    (0..count).step_by(count.div_ceil(most).max(1)).collect()
+}
+
+/// Adds the scatter of states (n, N) about their mean to the lower triangle of `scatter`, (n, n); returns the mean.
+fn add_scatter(scatter: &mut DMatrix<f64>, states: &DMatrix<f64>) -> DVector<f64> {
+    let mean = states.column_mean();
+    states.column_iter().for_each(|x| scatter.syger(1.0, &(x - &mean), &(x - &mean), 1.0));
+    mean
 }
 
 /// Converts the normal of nᵀSx, where Sx is the learner's state, to the unit normal of nᵀx in the units of the recording, with a

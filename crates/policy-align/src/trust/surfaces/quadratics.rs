@@ -30,7 +30,7 @@ pub(super) struct Quadratic {
 impl Quadratics {
     /// Statistics of the moving rows; `None` without any.
     pub(super) fn of(rows: &Rows, n: usize) -> Option<Quadratics> {
-        let chosen = some_of(rows, ROWS);
+        let chosen = some_of(rows.len(), ROWS);
         let states = rows.states().rows(0, n).select_columns(&chosen);
         let mean = states.column_mean();
         let squares: f64 = states.column_iter().map(|x| (x - &mean).norm_squared()).sum();

@@ -48,7 +48,7 @@ pub(crate) fn wall(rows: &Rows, prepared: &Prepared, gap: f64) -> Option<Finding
 
 /// The wall among some of the rows, in the learner's units, from their n coordinates of the state without the context.
 fn found(rows: &Rows, n: usize) -> Option<Wall> {
-    let chosen = some_of(rows, STATES);
+    let chosen = some_of(rows.len(), STATES);
     let movement: Vec<usize> = chosen.iter().map(|&row| rows.indices()[row].trajectory).collect();
     Wall::of(&rows.states().rows(0, n).select_columns(&chosen), &movement)
 }
