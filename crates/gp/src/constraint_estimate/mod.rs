@@ -139,7 +139,7 @@ impl Search<'_> {
         let of = |movement: &&[usize]| {
             let known = self.rows.labels().is_some();
             let rows = if known { movement.to_vec() } else { evenly(movement, MOST_SAMPLES) };
-            let movement = self.movement(&rows, least);
+            let movement = self.movement(&rows, least, SHARED);
             let alone = PARAMETER * self.rows.dim() as f64;
             let found = if known {
                 known_part(rows.len(), alone, movement.costs()).into_iter().collect()
@@ -158,17 +158,18 @@ impl Search<'_> {
         let mut rows = parts.rows[left.begin..left.end].to_vec();
         rows.extend(between.clone());
         rows.extend(&parts.rows[right.begin..right.end]);
-        let movement = self.movement(&rows, least);
+        let movement = self.movement(&rows, least, SHARED);
         let cost = |cut: usize| movement.cheapest(0, cut).0.0 + movement.cheapest(cut, rows.len()).0.0;
         let cuts = left.end - left.begin..=left.end - left.begin + between.len();
         let best = cuts.map(|cut| (cost(cut), cut)).min_by(|a, b| a.0.total_cmp(&b.0));
         best.map_or(first, |(_, cut)| rows[cut])
     }
 
-    fn movement(&self, rows: &[usize], least: f64) -> Movement {
+    /// Some rows of one movement, if this number of samples share one error of the policy.
+    fn movement(&self, rows: &[usize], least: f64, sharing: f64) -> Movement {
         let velocities = self.rows.velocities().select_columns(rows);
         let disagreement = self.wanted.actions.select_columns(rows) - &velocities;
-        let weight = |variance: f64| 1.0 / (self.noise + SHARED * variance.max(least));
+        let weight = |variance: f64| 1.0 / (self.noise + sharing * variance.max(least));
         let weights = self.wanted.variances(rows).into_iter().map(weight).collect();
         let disagreement = Disagreement::new(disagreement, weights, self.noise);
         let view = |(space, basis): (&TaskSpace, &Option<DMatrix<f64>>)| {
@@ -193,7 +194,7 @@ impl Search<'_> {
     fn of_movement(&self, of: &Parts, least: f64) -> Vec<StretchEstimate> {
         let with_gaps = of.with_gaps();
         let mut stretches: Vec<StretchEstimate> =
-            with_gaps.iter().map(|(part, found)| self.stretch(of, part, *found)).collect();
+            with_gaps.iter().map(|(part, found)| self.stretch(of, part, *found, least)).collect();
         for (at, pair) in with_gaps.windows(2).enumerate() {
             let (left, right) = (&pair[0].0, &pair[1].0);
             if left.end == right.begin && of.rows[left.end - 1] + 1 < of.rows[right.begin] {
@@ -205,7 +206,7 @@ impl Search<'_> {
         stretches
     }
 
-    fn stretch(&self, parts: &Parts, part: &Part<StretchKind>, found: bool) -> StretchEstimate {
+    fn stretch(&self, parts: &Parts, part: &Part<StretchKind>, found: bool, least: f64) -> StretchEstimate {
         let Parts { rows, movement, .. } = parts;
         let index = |at: usize| self.rows.indices()[rows[at]];
         // Known switches are used as given, even if a few samples beside them do not fit.
@@ -233,13 +234,20 @@ impl Search<'_> {
             stretch.space = space;
             stretch.matrix = canonical(&(&view.basis * directions.first(rank)));
             self.find_bound(&mut stretch, inside);
-            stretch.angle = directions.angle(rank);
+            stretch.angle = self.angle(inside, (space, rank), least);
             stretch.evidence = -0.5 * change;
         }
         if found && self.spaces[stretch.space].jacobians.is_none() {
             stretch.hidden = self.hidden(&stretch.matrix, inside);
         }
         stretch
+    }
+
+    /// (S29) of a constraint on all of some rows. The policy's error counts once on a stretch, since errors along it are alike.
+    fn angle(&self, rows: &[usize], (space, rank): (usize, usize), least: f64) -> f64 {
+        let movement = self.movement(rows, least, SHARED.max(rows.len() as f64));
+        let view = movement.views[space].as_ref();
+        view.map_or(0.0, |view| view.directions(0, rows.len(), self.noise).angle(rank))
     }
 
     /// Directions (n, r) other than the rows of A (k, n) along which velocities do not vary.
