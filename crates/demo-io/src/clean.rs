@@ -7,7 +7,7 @@ use crate::names::selection::flags;
 use crate::raw::{RawEpisode, RawRecordings, positive, remark, unused};
 use crate::rows::roles;
 use crate::{Fault, Nan, ReadError, ReadOptions};
-use motion::{Channel, Finding, is_called_context};
+use motion::{Channel, Finding, is_called_context, unwrap_angle};
 
 /// LeRobot's name for the positions of objects.
 pub(crate) const ENVIRONMENT: &str = "observation.environment_state";
@@ -240,26 +240,32 @@ fn split(draft: RawEpisode, longest: f64) -> Vec<RawEpisode> {
     cuts.windows(2).enumerate().map(part).collect()
 }
 
-/// Replaces steps of more than half a turn by short ones.
+/// Makes the named angles continuous.
 fn unwrap_angles(drafts: &mut RawRecordings, options: &ReadOptions) -> Result<(), ReadError> {
     let names = drafts.names();
     if options.unwrap.iter().any(|pattern| pattern != "*") {
         named(&options.unwrap, &names, "--unwrap")?;
     }
-    let turn = std::f64::consts::TAU;
     for (channel, _) in flags(&options.unwrap, &names).iter().enumerate().filter(|(_, chosen)| **chosen) {
-        for draft in &mut drafts.episodes {
-            let mut turns = 0.0;
-            let mut last: Option<f64> = None;
-            for value in draft.positions.iter_mut().skip(channel).step_by(names.len()) {
-                let raw = *value;
-                turns -= last.map_or(0.0, |last| ((raw - last) / turn).round());
-                last = Some(raw);
-                *value = raw + turns * turn;
-            }
+        let turn = whole_turn(drafts, channel);
+        for RawEpisode { positions, velocities, times, .. } in &mut drafts.episodes {
+            let seconds = |sample: usize| times[sample] - times[sample - 1];
+            unwrap_angle(positions, velocities, (names.len(), channel), turn, seconds);
         }
     }
     Ok(())
+}
+
+/// A whole turn in the units of a channel: radians, unless its values cover more than two turns.
+fn whole_turn(drafts: &RawRecordings, channel: usize) -> f64 {
+    let turn = std::f64::consts::TAU;
+    if drafts.channels[channel].unit.as_deref() == Some("rad") {
+        return turn;
+    }
+    let n = drafts.channels.len();
+    let values = drafts.episodes.iter().flat_map(|draft| draft.positions.iter().skip(channel).step_by(n));
+    let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &x| (low.min(x), high.max(x)));
+    if high - low > 2.0 * turn { 360.0 } else { turn }
 }
 
 /// Rounds to three or four digits, without trailing zeros.

@@ -39,7 +39,7 @@ pub struct ReadOptions {
     pub units: Vec<String>,
     /// `--degrees`: patterns of channels in degrees, which are converted to radians with their velocities.
     pub degrees: Vec<String>,
-    /// `--unwrap`: patterns of angles in radians that jump by whole turns; they are made continuous.
+    /// `--unwrap`: patterns of angles, in radians or degrees, that jump by whole turns; they are made continuous.
     pub unwrap: Vec<String>,
     /// `--nan`: the treatment of samples that are not finite.
     pub nan: Nan,

@@ -210,6 +210,10 @@ fn angles_become_radians_and_continuous() {
     let row = found.episodes[0].positions.row(0);
     assert!(row.iter().zip(row.iter().skip(1)).all(|(here, next)| (next - here - 3f64.to_radians()).abs() < 1e-12));
     assert_eq!(found.state[0].unit.as_deref(), Some("rad"));
+    // Without a unit, in degrees.
+    let found = parsed("a.csv", &text, &ReadOptions { unwrap: vec!["q1".to_owned()], ..plain() }).unwrap();
+    let row = found.episodes[0].positions.row(0);
+    assert!(row.iter().zip(row.iter().skip(1)).all(|(here, next)| (next - here - 3.0).abs() < 1e-9), "{row}");
 }
 
 #[test]

@@ -65,6 +65,7 @@
 //! # Ok::<(), motion::LearnError>(())
 //! ```
 
+mod angles;
 pub mod anomalies;
 mod demonstrations;
 mod error;
@@ -80,6 +81,7 @@ mod scaled;
 mod times;
 mod trajectory;
 
+pub use angles::unwrap_angle;
 pub use demonstrations::Demonstrations;
 pub use error::{MotionError, Series};
 pub use finding::{Decision, Finding, LeftOut, Verdict};

@@ -4,8 +4,8 @@
 use serde_json::Value;
 
 /// Flags that are arguments in Python; flags of other programs (`rosbags-convert --src`) are left unchanged.
-const ARGUMENTS: &str = "as bandwidth constraint-column context decimal degrees dt episode filter folds ignore init-d integration \
-                         jumps learner max-rows nan reading samples-are scale seed separator smooth sort split-gap state \
+const ARGUMENTS: &str = "as bandwidth constraint-column context decimal degrees dt episode filter folds ignore inducing init-d integration \
+                         jumps learner max-rows nan reading robot samples-are scale seed separator smooth sort split-gap state \
                          time time-unit topic trim-still trust units unwrap velocity wraps";
 
 /// Flags whose values are words: `--nan drop` becomes `nan="drop"`.

@@ -37,6 +37,9 @@ pub enum FitError {
         /// The reason.
         reason: String,
     },
+    /// Movements in other units, averaged or differenced, are not valid.
+    #[error("the movements cannot be learnt from: {0}")]
+    Motion(#[from] motion::MotionError),
     /// Error of a Gaussian process.
     #[error(transparent)]
     Gp(#[from] GpError),

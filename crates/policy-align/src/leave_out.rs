@@ -6,7 +6,6 @@ use motion::Demonstrations;
 use nalgebra::DVector;
 use serde::{Deserialize, Serialize};
 
-use crate::fit::cleaning;
 use crate::{EvaluateError, Evaluation, FitError, FitOptions, Model, Prepared, Progress, evaluate, fit};
 
 /// Prediction of the movements under one constraint by the policy learnt under all others.
@@ -51,13 +50,11 @@ pub(crate) fn in_units_of(model: &Model, prepared: &Prepared) -> Result<Prepared
     let factors = model.state.iter().zip(&prepared.state).map(|(learnt, own)| learnt.scale / own.scale);
     let factors = DVector::from_iterator(prepared.state.len(), factors);
     let of_context = model.context.iter().zip(&prepared.context).map(|(learnt, own)| learnt.scale / own.scale);
-    let prepared = prepared
-        .with_context_scaled(&DVector::from_iterator(prepared.context.len(), of_context))
-        .map_err(|error| cleaning(&error))?;
+    let prepared = prepared.with_context_scaled(&DVector::from_iterator(prepared.context.len(), of_context))?;
     if factors.iter().all(|&factor| factor == 1.0) {
         return Ok(prepared);
     }
-    Ok(prepared.rescaled(&factors).map_err(|error| cleaning(&error))?)
+    Ok(prepared.rescaled(&factors)?)
 }
 
 /// Some of the movements, with the preparation of all.

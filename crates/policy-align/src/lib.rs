@@ -35,7 +35,7 @@
 //! | evaluate | [`evaluate()`] on other recordings, [`leave_constraints_out`] across constraints |
 //!
 //! Guides in `docs`: `your-own-data.md` (the program step by step), `which-learner.md`, `model-file.md`, `slope-gp.md`
-//! (equations). `docs/your-own-data.md` lists the faults found in recordings, and links the verdicts on 119 kinds.
+//! (equations). `docs/your-own-data.md` lists the faults found in recordings, and links the verdicts on all kinds that the tests contain.
 //!
 //! # Exit codes of the program
 //!

@@ -18,7 +18,7 @@ const ROUNDING: f64 = 1e-14;
 
 /// s², the variance of a velocity along an axis: the smaller of two upper bounds. Third differences also contain the curvature
 /// of the motion; the least extent of windows also contains switches and free movement. At least the median of known variances;
-/// `None` without three successive samples.
+/// `None` without four successive samples.
 pub(crate) fn velocity_noise(
     velocities: &DMatrix<f64>,
     variances: Option<&[f64]>,
@@ -40,7 +40,7 @@ pub(crate) fn known_noise(variances: Option<&[f64]>) -> f64 {
     variances.and_then(|variances| upper_median(variances.to_vec())).unwrap_or(0.0)
 }
 
-/// The variance of a velocity along an axis from third differences, an upper bound; `None` without three successive samples.
+/// The variance of a velocity along an axis from third differences, an upper bound; `None` without four successive samples.
 pub(crate) fn noise_of_differences(velocities: &DMatrix<f64>, movements: &[&[usize]]) -> Option<f64> {
     let dim = velocities.nrows();
     let velocity = |row: usize| velocities.column(row);

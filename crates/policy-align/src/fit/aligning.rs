@@ -202,8 +202,7 @@ fn grid(
         let others: Vec<_> = (0..demonstrations.n_trajectories()).filter(|k| !held.contains(k)).collect();
         let training = others.iter().map(|&k| demonstrations.trajectories()[k].clone()).collect();
         // A fold does not contain all movements, so the training set is not empty.
-        let training = Demonstrations::new(training)
-            .map_err(|error| FitError::Gp(gp::GpError::Cleaning { reason: error.to_string() }))?;
+        let training = Demonstrations::new(training)?;
         let align = PolicyAlign { integration, bandwidth: Bandwidth::Fixed(sigma_squared), ..PolicyAlign::default() };
         let aligned = align.align(&training)?;
         let test: Vec<usize> = (0..rows.len()).filter(|&row| held.contains(&rows.indices()[row].trajectory)).collect();

@@ -5,7 +5,7 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
 use super::options::{FitOptions, LearnerChoice};
-use super::recorded_rows::{cleaning, rows};
+use super::recorded_rows::rows;
 use crate::{FitError, Prepared};
 
 /// The movements with each context multiplied by the factor that predicts left-out movements best. Contexts that the user scaled
@@ -23,5 +23,5 @@ pub(super) fn comparable(prepared: &Prepared, options: &FitOptions) -> Result<Pr
             *factor = 1.0;
         }
     }
-    Ok(prepared.with_context_scaled(&factors).map_err(|error| cleaning(&error))?)
+    Ok(prepared.with_context_scaled(&factors)?)
 }

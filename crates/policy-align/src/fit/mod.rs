@@ -18,7 +18,7 @@ pub use digest::Digest;
 pub(crate) use digest::made_beside;
 pub use options::{FitOptions, LearnerChoice};
 pub use progress::{Progress, Step};
-pub(crate) use recorded_rows::{averaged, cleaning, least_noisy_rows, rows};
+pub(crate) use recorded_rows::{averaged, least_noisy_rows, rows};
 
 use gp::{AutoFit, Grouping, LeftOutRow, TrajectoryErrors};
 use kinematics::RobotModel;

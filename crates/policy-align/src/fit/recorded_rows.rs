@@ -1,25 +1,25 @@
-use gp::{FrontEnd, GpError, Rows};
-use motion::{Demonstrations, MotionError};
+use gp::{FrontEnd, Rows};
+use motion::Demonstrations;
 use prepare::{thinned, with_less_noise, with_slopes};
 
-use crate::{Prepared, VelocitySource};
+use crate::{FitError, Prepared, VelocitySource};
 
 /// The rows from which the Gaussian processes learn.
-pub(crate) fn rows(prepared: &Prepared) -> Result<Rows, GpError> {
+pub(crate) fn rows(prepared: &Prepared) -> Result<Rows, FitError> {
     let demonstrations = averaged(prepared)?;
     let demonstrations = match prepared.velocities {
-        VelocitySource::PositionsAsRequested => with_slopes(&demonstrations).map_err(|error| cleaning(&error))?,
+        VelocitySource::PositionsAsRequested => with_slopes(&demonstrations)?,
         _ => demonstrations,
     };
-    front_end(prepared.velocities).rows(&demonstrations)
+    Ok(front_end(prepared.velocities).rows(&demonstrations)?)
 }
 
 /// The rows for estimating constraints. If recorded velocities are noisy, slopes of the positions are used if these have less
 /// noise.
-pub(crate) fn least_noisy_rows(prepared: &Prepared) -> Result<Rows, GpError> {
+pub(crate) fn least_noisy_rows(prepared: &Prepared) -> Result<Rows, FitError> {
     let VelocitySource::Noisy(variance) = prepared.velocities else { return rows(prepared) };
-    match with_less_noise(&averaged(prepared)?, variance).map_err(|error| cleaning(&error))? {
-        Some((demonstrations, variance)) => FrontEnd::NoisyVelocities { variance }.rows(&demonstrations),
+    match with_less_noise(&averaged(prepared)?, variance)? {
+        Some((demonstrations, variance)) => Ok(FrontEnd::NoisyVelocities { variance }.rows(&demonstrations)?),
         None => rows(prepared),
     }
 }
@@ -35,10 +35,6 @@ fn front_end(velocities: VelocitySource) -> FrontEnd {
 }
 
 /// The movements with samples averaged as `prepare` decided.
-pub(crate) fn averaged(prepared: &Prepared) -> Result<Demonstrations, GpError> {
-    thinned(&prepared.demonstrations, prepared.averaged).map_err(|error| cleaning(&error))
-}
-
-pub(crate) fn cleaning(error: &MotionError) -> GpError {
-    GpError::Cleaning { reason: error.to_string() }
+pub(crate) fn averaged(prepared: &Prepared) -> Result<Demonstrations, FitError> {
+    Ok(thinned(&prepared.demonstrations, prepared.averaged)?)
 }

@@ -78,7 +78,7 @@ pub(super) fn candidates(
 }
 
 fn rescaled(prepared: &Prepared, factors: &DVector<f64>, options: &FitOptions) -> Result<Prepared, FitError> {
-    let rescaled = prepared.rescaled(factors).map_err(|error| super::recorded_rows::cleaning(&error))?;
+    let rescaled = prepared.rescaled(factors)?;
     if rescaled.context.is_empty() { Ok(rescaled) } else { super::context::comparable(&rescaled, options) }
 }
 

@@ -1,5 +1,4 @@
 use demo_io::ReadError;
-use gp::GpError;
 use thiserror::Error;
 
 use crate::PrepareError;
@@ -52,7 +51,7 @@ pub enum DigestError {
     Prepare(#[from] PrepareError),
     /// Their samples cannot be converted to rows.
     #[error(transparent)]
-    Gp(#[from] GpError),
+    Fit(#[from] crate::FitError),
     /// They differ from the recordings at hand.
     #[error("{what} are {here} here, but {before} in the others")]
     Differs {

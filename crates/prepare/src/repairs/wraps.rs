@@ -1,12 +1,13 @@
 use std::f64::consts::TAU;
 
-use motion::{Channel, Episode, Verdict};
+use motion::{Channel, Episode, Verdict, unwrap_angle};
+use nalgebra::DMatrix;
 
 use crate::notes::{Notes, and_more};
 use crate::numbers::short;
 use crate::scale::range;
 
-/// A step longer than this share of a turn is a wrap.
+/// Only a step longer than this share of a turn shows that an angle wraps.
 const WRAP: f64 = 0.75;
 /// Angles that wrap come this close to the end of their range, and hardly exceed it.
 const RANGE: std::ops::RangeInclusive<f64> = 0.9..=1.02;
@@ -19,7 +20,7 @@ pub(crate) fn unwrap(episodes: &mut [Episode], channels: &[Channel], notes: &mut
         let Some((first, (sample, step))) = wraps.next() else { continue };
         let (place, wrapped) = (first.place(sample), 1 + wraps.count());
         for episode in episodes.iter_mut() {
-            go_on(episode, channel, turn);
+            unwrapped(episode, channel, turn);
         }
         to_common_end(episodes, channel, turn);
         let name = &described.name;
@@ -59,27 +60,12 @@ fn wrap(episode: &Episode, channel: usize, turn: f64) -> Option<(usize, f64)> {
     Some((at, step(at)))
 }
 
-fn go_on(episode: &mut Episode, channel: usize, turn: f64) {
-    let mut turns = 0.0;
-    let mut before = episode.positions[(channel, 0)];
-    for i in 1..episode.n_samples() {
-        let now = episode.positions[(channel, i)];
-        if (now - before).abs() > WRAP * turn {
-            turns -= ((now - before) / turn).round();
-            if let Some(velocities) = &mut episode.velocities {
-                // Velocities that were computed from the positions jump with them.
-                let seconds = episode.times.seconds(i - 1, i);
-                for sample in [i - 1, i] {
-                    let velocity = &mut velocities[(channel, sample)];
-                    if (*velocity * seconds).abs() > WRAP * turn {
-                        *velocity -= turn / seconds * (*velocity * seconds / turn).round();
-                    }
-                }
-            }
-        }
-        before = now;
-        episode.positions[(channel, i)] += turns * turn;
-    }
+fn unwrapped(episode: &mut Episode, channel: usize, turn: f64) {
+    let Episode { positions, velocities, times, .. } = episode;
+    let velocities = velocities.as_mut().map_or_else(Default::default, DMatrix::as_mut_slice);
+    let dim = positions.nrows();
+    let seconds = |sample: usize| times.seconds(sample - 1, sample);
+    unwrap_angle(positions.as_mut_slice(), velocities, (dim, channel), turn, seconds);
 }
 
 fn to_common_end(episodes: &mut [Episode], channel: usize, turn: f64) {

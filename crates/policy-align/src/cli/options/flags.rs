@@ -73,7 +73,7 @@ pub(crate) struct ReadFlags {
     /// Channels in degrees, converted to radians
     #[arg(long, value_name = "PATTERNS")]
     degrees: Vec<String>,
-    /// Angles (radians) to unwrap in what is read, also by `convert`
+    /// Angles to unwrap in what is read, also by `convert`
     #[arg(long, value_name = "PATTERNS")]
     unwrap: Vec<String>,
     /// Samples that are not finite: refuse, drop or fill [default: refuse]
