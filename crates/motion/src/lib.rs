@@ -86,7 +86,7 @@ pub use demonstrations::Demonstrations;
 pub use error::{MotionError, Series};
 pub use finding::{Decision, Finding, LeftOut, Verdict};
 pub use learner::{Certainty, LearnError, Learner, LearntPolicy};
-pub use mean::{mean_and_error, standard_deviation};
+pub use mean::{mean_and_error, spread, standard_deviation};
 pub use median::{median, upper_median};
 pub use policy::{NegativeGradient, Policy, Potential};
 pub use recordings::{Channel, Episode, Recordings, Rows, Source, is_called_context};

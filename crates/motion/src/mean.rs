@@ -1,3 +1,5 @@
+use nalgebra::DMatrix;
+
 /// Largest rounding error between equal values and their mean, relative to the mean.
 const ROUNDING: f64 = 1e-13;
 
@@ -7,6 +9,12 @@ pub fn mean_and_error(values: &[f64]) -> (f64, f64) {
     let mean = values.iter().sum::<f64>() / count;
     let variance = values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / (count - 1.0);
     (mean, (variance / count).sqrt())
+}
+
+/// Σ‖u − mean u‖² over the columns u of (n, N).
+pub fn spread(columns: &DMatrix<f64>) -> f64 {
+    let mean = columns.column_mean();
+    columns.column_iter().map(|column| (column - &mean).norm_squared()).sum()
 }
 
 /// Standard deviation about the mean, divided by N; 0 if values differ by rounding alone. Sums and squares of finite values do

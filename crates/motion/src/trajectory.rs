@@ -186,6 +186,11 @@ impl Trajectory {
         self.times.seconds(from, to)
     }
 
+    /// Seconds from the first to the last sample.
+    pub fn duration(&self) -> f64 {
+        self.times.duration()
+    }
+
     /// State x_i, (n).
     pub fn state(&self, sample: usize) -> DVectorView<'_, f64> {
         self.states.column(sample)

@@ -1,7 +1,7 @@
 use std::io;
 use std::path::Path;
 
-use motion::{SampleIndex, upper_median};
+use motion::{SampleIndex, Trajectory, upper_median};
 use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 
@@ -87,7 +87,7 @@ impl DataSummary {
     /// The summary of these movements and their velocities, (n, N), without files.
     pub(crate) fn of(prepared: &Prepared, velocities: &DMatrix<f64>) -> DataSummary {
         let movements = prepared.demonstrations.trajectories();
-        let seconds = movements.iter().map(|movement| movement.seconds(0, movement.n_samples() - 1));
+        let seconds = movements.iter().map(Trajectory::duration);
         DataSummary {
             files: vec![],
             episodes: movements.len(),

@@ -97,7 +97,7 @@ fn line(set: &Set, seed: u64) -> Option<String> {
         a_s, a_d, q, t, lambda, t_lambda, p_d, gap, ref least_seen, hidden, trajectories, free, ..
     } = *fit.numbers();
     let dim = least_seen.direction.len();
-    let seen = least_seen.share * dim as f64;
+    let seen = least_seen.coverage();
     let [slope, direct, either]: [&dyn LearntPolicy; 3] = [fit.slope(), fit.direct(), &fit];
     let errors = [slope, direct, either].map(|policy| format!("{:.3e}", error(policy, &set.recordings)));
     let numbers = [a_s, a_d, q, t, lambda, t_lambda, p_d, gap, seen, hidden].map(|number| format!("{number:.6e}"));

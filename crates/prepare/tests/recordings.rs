@@ -663,12 +663,13 @@ proptest! {
         prop_assert!(!says(&self::prepared(&recordings()), words));
     }
 
-    /// x' = −2x, limited in speed.
+    /// x' = −2x, limited in speed. Noise is that of velocities if these are recorded, else that of positions, which hides the limit from
+    /// single steps.
     #[test]
     fn a_speed_limit_is_found(limit in 0.3..0.9f64, noise in prop::sample::select(vec![0.0, 0.01]), recorded in any::<bool>()) {
         let of = |limit: f64| {
             let mut seed = 0.5_f64;
-            let mut noisy = || { seed = (997.0 * seed + 0.3).fract(); if recorded { noise * (seed - 0.5) } else { 0.0 } };
+            let mut noisy = || { seed = (997.0 * seed + 0.3).fract(); noise * (seed - 0.5) };
             let mut at = move |k: usize, t: f64| {
                 let start = (1.0 + 0.05 * k as f64) * [1.0, -1.0][k % 2];
                 // At the limit until |x| = limit/2, then an exponential.
@@ -676,7 +677,9 @@ proptest! {
                 let x = if t < until { start.abs() - limit * t } else { (start.abs() - limit * until) * (-2.0 * (t - until)).exp() };
                 let u = if t < until { -limit } else { -2.0 * x };
                 let y = 0.3 * (0.9 * k as f64).cos() * (-0.5 * t).exp();
-                (DVector::from_vec(vec![x * start.signum(), y]), DVector::from_vec(vec![u * start.signum() + noisy(), -0.5 * y + noisy()]))
+                let off = DVector::from_vec(vec![noisy(), noisy()]);
+                let (at, velocity) = (DVector::from_vec(vec![x * start.signum(), y]), DVector::from_vec(vec![u * start.signum(), -0.5 * y]));
+                if recorded { (at, velocity + off) } else { (at + off, velocity) }
             };
             let at = std::cell::RefCell::new(&mut at);
             let mut recordings = moving(&["x", "y"], |k, t| (*at.borrow_mut())(k, t));
@@ -686,10 +689,13 @@ proptest! {
             self::prepared(&recordings)
         };
         let limited = of(limit);
-        prop_assert_eq!(verdict(&limited, "same largest speed along x"), Verdict::Doubtful);
-        let what = limited.findings.iter().map(|finding| &finding.what).find(|what| what.contains("speed along")).unwrap();
-        let named: f64 = what.split("along x, ").nth(1).and_then(|rest| rest.split(':').next()).unwrap().parse().unwrap();
-        prop_assert!((named / limit - 1.0).abs() < 0.03, "{}", what);
+        // With noise of positions, y is too slow beside x to tell whether the limit is x's or the hand's.
+        let exact = recorded || noise == 0.0;
+        let (words, tolerance) = if exact { ("same largest speed along x", 0.03) } else { ("same largest speed", 0.06) };
+        prop_assert_eq!(verdict(&limited, words), Verdict::Doubtful);
+        let what = limited.findings.iter().map(|finding| &finding.what).find(|what| what.contains(words)).unwrap();
+        let named: f64 = what.split(": a speed").next().and_then(|rest| rest.rsplit(", ").next()).unwrap().parse().unwrap();
+        prop_assert!((named / limit - 1.0).abs() < tolerance, "{}", what);
         prop_assert!(!says(&of(10.0), "largest speed"));
     }
 

@@ -1,8 +1,8 @@
 use nalgebra::{DMatrix, DVector};
 
 use crate::direct::model::DirectModel;
+use crate::evidence::Evidence;
 use crate::evidence::family_fit::{FamilyFit, fit_family};
-use crate::evidence::{Evidence, Task, Workspace};
 use crate::inducing::Induced;
 use crate::kernel::direct_block::{DirectBlock, DirectCovariance};
 use crate::kernel::triangle::Upper;
@@ -39,18 +39,8 @@ impl DirectData {
     /// [`GpError::Lengths`], [`GpError::OneState`], [`GpError::NoMotion`], [`GpError::Overflow`], or [`GpError::Value`]
     /// for a weight that is not positive.
     pub fn new(rows: &Rows, noise_weights: Vec<f64>) -> Result<Self, GpError> {
-        let (found, expected) = (noise_weights.len(), rows.len());
-        if found != expected {
-            return Err(GpError::Lengths { what: "noise weights", found, expected });
-        }
-        if let Some(row) = noise_weights.iter().position(|&weight| !(weight > 0.0 && weight.is_finite())) {
-            return Err(GpError::Value { what: "noise weight", row, value: noise_weights[row] });
-        }
-        let mut groups = std::collections::BTreeMap::<usize, Vec<usize>>::new();
-        for (row, index) in rows.indices().iter().enumerate() {
-            groups.entry(index.trajectory).or_default().push(row);
-        }
-        Self::of(rows.states(), rows.velocities(), |_| noise_weights, groups.into_values().collect())
+        rows.check_noise_weights(&noise_weights)?;
+        Self::of(rows.states(), rows.velocities(), |_| noise_weights, rows.groups())
     }
 
     pub(crate) fn from_kept(kept: &Kept) -> Result<Self, GpError> {
@@ -112,9 +102,7 @@ impl DirectData {
     /// # Panics
     /// If `theta` does not have one entry per block and one more.
     pub fn evidence(&self, blocks: &[DirectBlock], theta: &[f64]) -> Option<Evidence> {
-        let all: Vec<usize> = (0..self.z.ncols()).collect();
-        let task = Task::of(&self.covariance(blocks), &all, &self.conditions());
-        task.evidence(&DVector::from_column_slice(theta), &mut Workspace::default())
+        Evidence::of(&self.covariance(blocks), theta, &self.conditions())
     }
 
     /// The model at θ with the noise increased by κ, and its leave-one-trajectory-out predictions (R3); `None` if the

@@ -28,6 +28,15 @@ pub struct Evidence {
     pub gradient: DVector<f64>,
 }
 
+impl Evidence {
+    /// On all rows at θ; `None` if the covariance has no Cholesky factor.
+    pub(crate) fn of(covariance: &impl Covariance, theta: &[f64], conditions: &Conditions<'_>) -> Option<Self> {
+        let all: Vec<usize> = (0..conditions.targets.nrows()).collect();
+        let task = Task::of(covariance, &all, conditions);
+        task.evidence(&DVector::from_column_slice(theta), &mut Workspace::default())
+    }
+}
+
 /// The rows whose marginal likelihood is maximised, with their targets (h, c): c columns that share one covariance.
 #[derive(Debug)]
 pub(crate) struct Task {

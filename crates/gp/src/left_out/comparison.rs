@@ -1,6 +1,6 @@
 //! Measures how much two models differ, and whether one is better by more than chance.
 
-use motion::mean_and_error;
+use motion::{mean_and_error, spread};
 use nalgebra::DMatrix;
 
 /// mean/(sd/√K), sd with K − 1; 0 if nothing varies.
@@ -35,10 +35,4 @@ pub(crate) fn much_better(gains: &[f64], (before, after): (f64, f64)) -> Option<
 /// Σ|a − b|²/Σ|a − mean a|² over columns.
 pub(crate) fn difference(a: &DMatrix<f64>, b: &DMatrix<f64>) -> f64 {
     (a - b).norm_squared() / spread(a)
-}
-
-/// Σ|a − mean a|² over columns.
-pub(crate) fn spread(a: &DMatrix<f64>) -> f64 {
-    let mean = a.column_mean();
-    a.column_iter().map(|column| (column - &mean).norm_squared()).sum()
 }

@@ -27,7 +27,7 @@ pub struct LeftOutPredictions {
 /// Held-out error, as a share of the variance, below which prediction cannot distinguish any further.
 const EXACT: f64 = 1e-8;
 /// Held-out error below which differences between models are insignificant and a model's family is not in question.
-const NEARLY_EXACT: f64 = 1e-3;
+pub(crate) const NEARLY_EXACT: f64 = 1e-3;
 
 impl LeftOutPredictions {
     /// (S11) for residuals (M, c) and their variances (M); `None` if they are not finite.

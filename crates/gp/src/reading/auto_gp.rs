@@ -10,7 +10,7 @@ use crate::direct::direct_gp::{DirectFit, DirectGp};
 use crate::direct::free_rows::near;
 use crate::left_out::comparison::{difference, much_better};
 use crate::reading::Hypothesis;
-use crate::reading::both::Both;
+use crate::reading::both::{Both, LeftOutErrors};
 use crate::reading::numbers::{LeftOutRow, ReadingNumbers, TrajectoryErrors};
 use crate::slope::cross_path::CrossPathEvidence;
 use crate::slope::fit::SlopeFit;
@@ -110,7 +110,7 @@ impl AutoGp {
         }
         let slope = SlopeFit { model: slope.taken.model, report };
         let (direct, freely) = (direct.fit, freely.map(|freely| freely.direct.fit));
-        let (left_out, left_out_rows) = left_out;
+        let LeftOutErrors { trajectories: left_out, rows: left_out_rows } = left_out;
         let (reading, overridden) = (Some(reading), self.reading);
         Ok(AutoFit { slope, direct, freely, numbers, reading, overridden, left_out, left_out_rows })
     }

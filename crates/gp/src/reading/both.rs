@@ -19,8 +19,11 @@ pub(crate) struct Both {
     pub(crate) freely: Option<OfFreeRows>,
 }
 
-/// Left-out errors of trajectories, and of rows.
-pub(crate) type LeftOutPredictions = (Vec<TrajectoryErrors>, Vec<LeftOutRow>);
+/// Errors of predictions of left-out trajectories.
+pub(crate) struct LeftOutErrors {
+    pub(crate) trajectories: Vec<TrajectoryErrors>,
+    pub(crate) rows: Vec<LeftOutRow>,
+}
 
 impl Both {
     /// Adds the direct GP of the free rows if it explains the others (R10).
@@ -52,7 +55,7 @@ impl Both {
 
     /// Compares their predictions of left-out trajectories on these rows, with the slope GP of `pushed`, if any, in place of
     /// their own.
-    pub(crate) fn compared(&self, pushed: Option<&Pushed>) -> (ReadingNumbers, LeftOutPredictions) {
+    pub(crate) fn compared(&self, pushed: Option<&Pushed>) -> (ReadingNumbers, LeftOutErrors) {
         let Both { kept, slope, direct, freely } = self;
         let direct = freely.as_ref().map_or(direct, |freely| &freely.direct);
         let actions = pushed.map(|pushed| pushed.outcome.taken.model.actions(&kept.states));
@@ -69,6 +72,7 @@ impl Both {
             freely: freely.as_ref(),
             shares: shares.as_deref(),
         };
-        (ReadingNumbers::compared(&compared), (compared.errors(), compared.rows()))
+        let errors = LeftOutErrors { trajectories: compared.errors(), rows: compared.rows() };
+        (ReadingNumbers::compared(&compared), errors)
     }
 }

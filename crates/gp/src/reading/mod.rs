@@ -10,7 +10,7 @@ use std::fmt;
 use serde::{Deserialize, Serialize};
 
 use crate::reading::numbers::{FreeRows, ReadingNumbers};
-use crate::report::identifiability::direction;
+use crate::report::identifiability::{LeastSeen, direction};
 use crate::rows::kept::Grouping;
 
 /// Whether hidden constraints acted on the demonstrations (R8).
@@ -33,9 +33,7 @@ pub enum Hypothesis {
 const SAME: f64 = 0.01;
 /// Difference up to which the policies count as equal if all directions were observed.
 const CLOSE: f64 = 0.1;
-/// All directions count as observed if the least observed one has this share of an even distribution.
-const SEEN: f64 = 0.1;
-/// The same if the policies differ: across a constraint common to all movements, noise alone produces up to this share.
+/// Coverage from which all directions count as observed if the policies differ: across a constraint common to all movements, noise alone produces up to this share.
 const WELL_SEEN: f64 = 0.25;
 /// Minimum number of demonstrations for the reading constrained.
 const DEMONSTRATIONS: usize = 5;
@@ -70,8 +68,8 @@ impl ReadingNumbers {
 
     /// Whether there was motion in every direction, and more than noise produces if the policies differ.
     pub fn seen(&self) -> bool {
-        let least = if self.gap > SAME { WELL_SEEN } else { SEEN };
-        self.least_seen.share * self.least_seen.direction.len() as f64 >= least
+        let least = if self.gap > SAME { WELL_SEEN } else { LeastSeen::COVERED };
+        self.least_seen.coverage() >= least
     }
 
     /// Whether the state has one dimension. Its only direction cannot hide another: a constraint stops the movement or has no
@@ -173,7 +171,7 @@ impl ReadingNumbers {
                 direction(&self.least_seen.direction)
             ),
             Hypothesis::Ambiguous => format!(
-                "Two readings explain these demonstrations equally well. (a) Nothing was constrained: then the direct policy is right (used; left-out error {p_d}). (b) The same constraint acted always: then the policy is unknown across it, and the slope policy is one guess; the two differ by {gap}. Only you know: `--reading free` or `--reading constrained`, or record a few demonstrations that pass the same states in other directions.{few}"
+                "Two readings explain these demonstrations equally well. (a) Nothing was constrained: then the direct policy is right (used; left-out error {p_d}). (b) The same constraint acted always: then the policy is unknown across it, and the slope policy is one guess; the two differ by {gap}. Only you know: give the reading (free or constrained), or record a few demonstrations that pass the same states in other directions.{few}"
             ),
             Hypothesis::Unexplained => format!(
                 "Neither reading predicts left-out movements (errors {p_d} and {a_s}). Too few demonstrations, too much noise, or the movement does not depend on the state alone (time, load, target).{} No policy should be trusted.",

@@ -27,6 +27,16 @@ pub struct LeastSeen {
     pub direction: Vec<f64>,
 }
 
+impl LeastSeen {
+    /// Coverage below which no movement tested the policy along the direction.
+    pub const COVERED: f64 = 0.1;
+
+    /// n times the share: 1 if movements go in all directions alike, 0 if none goes along this one.
+    pub fn coverage(&self) -> f64 {
+        self.share * self.direction.len() as f64
+    }
+}
+
 impl Identifiability {
     /// From the mean posterior and prior covariances of the policy, (n, n).
     pub(crate) fn of(posterior: &DMatrix<f64>, prior: &DMatrix<f64>) -> Self {

@@ -124,7 +124,7 @@ impl TrustReport {
                 self.identifiability.least
             ));
         }
-        if self.least_seen.share * (self.least_seen.direction.len() as f64) < 1e-6 {
+        if self.least_seen.coverage() < 1e-6 {
             warnings.push(format!("nothing ever moved along {}", direction(&self.least_seen.direction)));
         }
         if self.ambiguity > 0.1 {

@@ -11,6 +11,7 @@ pub(crate) mod task_space;
 pub(crate) mod thinning;
 
 use std::borrow::Cow;
+use std::collections::BTreeMap;
 
 use motion::{SampleIndex, upper_median};
 use nalgebra::DMatrix;
@@ -205,6 +206,24 @@ impl Rows {
         self.momenta.as_ref()
     }
 
+    /// The rows of each trajectory, which need not be contiguous.
+    pub(crate) fn groups(&self) -> Vec<Vec<usize>> {
+        let mut groups = BTreeMap::<usize, Vec<usize>>::new();
+        for (row, index) in self.indices.iter().enumerate() {
+            groups.entry(index.trajectory).or_default().push(row);
+        }
+        groups.into_values().collect()
+    }
+
+    /// Refuses noise weights that are not one positive number for each row.
+    pub(crate) fn check_noise_weights(&self, noise_weights: &[f64]) -> Result<(), GpError> {
+        let (found, expected) = (noise_weights.len(), self.len());
+        if found != expected {
+            return Err(GpError::Lengths { what: "noise weights", found, expected });
+        }
+        require_positive("noise weight", noise_weights)
+    }
+
     /// The component of each velocity along the direction of its equation, (n, M): along M(x)u (S31), or the whole velocity (S1).
     pub(crate) fn parts(&self) -> Cow<'_, DMatrix<f64>> {
         match &self.momenta {
@@ -284,4 +303,11 @@ pub(crate) fn parts_along(velocities: &DMatrix<f64>, directions: &DMatrix<f64>) 
         part.copy_from(&(&unit * unit.dot(&velocity)));
     }
     parts
+}
+/// Refuses the first value that is not positive and finite.
+pub(crate) fn require_positive(what: &'static str, values: &[f64]) -> Result<(), GpError> {
+    match values.iter().position(|&value| !(value > 0.0 && value.is_finite())) {
+        Some(row) => Err(GpError::Value { what, row, value: values[row] }),
+        None => Ok(()),
+    }
 }

@@ -1,7 +1,7 @@
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DMatrix;
 
+use crate::evidence::Evidence;
 use crate::evidence::family_fit::{FamilyFit, fit_family};
-use crate::evidence::{Evidence, Task, Workspace};
 use crate::inducing::Induced;
 use crate::kernel::block::Block;
 use crate::kernel::covariance::Covariance;
@@ -11,6 +11,7 @@ use crate::kernel::whitening::Whitening;
 use crate::left_out::LeftOutPredictions;
 use crate::left_out::level::{Conditions, Level, kappas};
 use crate::rows::kept::Kept;
+use crate::rows::require_positive;
 use crate::rows::scaling::Scaling;
 use crate::slope::expansion::Expansion;
 use crate::slope::model::SlopeModel;
@@ -51,23 +52,11 @@ impl SlopeData {
     /// [`GpError::Lengths`], [`GpError::OneState`], [`GpError::Overflow`], or [`GpError::Value`] for a row without motion or a
     /// weight that is not positive.
     pub fn new(rows: &Rows, noise_weights: Vec<f64>) -> Result<Self, GpError> {
-        let (found, expected) = (noise_weights.len(), rows.len());
-        if found != expected {
-            return Err(GpError::Lengths { what: "noise weights", found, expected });
-        }
+        rows.check_noise_weights(&noise_weights)?;
         let parts = rows.parts();
         let speeds: Vec<f64> = parts.column_iter().map(|part| part.norm()).collect();
-        for (what, values) in [("speed", &speeds), ("noise weight", &noise_weights)] {
-            if let Some(row) = values.iter().position(|&value| !(value > 0.0 && value.is_finite())) {
-                return Err(GpError::Value { what, row, value: values[row] });
-            }
-        }
-        let mut groups = std::collections::BTreeMap::<usize, Vec<usize>>::new();
-        for (row, index) in rows.indices().iter().enumerate() {
-            groups.entry(index.trajectory).or_default().push(row);
-        }
-        let groups = groups.into_values().collect();
-        Self::of(rows.states(), &parts, &speeds, noise_weights, groups)
+        require_positive("speed", &speeds)?;
+        Self::of(rows.states(), &parts, &speeds, noise_weights, rows.groups())
     }
 
     pub(crate) fn from_kept(kept: &Kept, noise_weights: Vec<f64>) -> Result<Self, GpError> {
@@ -124,9 +113,7 @@ impl SlopeData {
     /// # Panics
     /// If `theta` does not have one entry per block and one more.
     pub fn evidence(&self, blocks: &[Block], theta: &[f64]) -> Option<Evidence> {
-        let all: Vec<usize> = (0..self.z.ncols()).collect();
-        let task = Task::of(&self.covariance(blocks), &all, &self.conditions());
-        task.evidence(&DVector::from_column_slice(theta), &mut Workspace::default())
+        Evidence::of(&self.covariance(blocks), theta, &self.conditions())
     }
 
     /// The model at θ with the noise increased by κ, and its leave-one-trajectory-out predictions; `None` if the covariance has

@@ -1,5 +1,6 @@
 //! The trust report of a slope GP, with the expected error on new movements (R6), (S19).
 
+use motion::spread;
 use nalgebra::{DMatrix, DVectorView};
 use rayon::prelude::*;
 
@@ -7,7 +8,7 @@ use crate::Rows;
 use crate::kernel::covariance::NOISE_FLOOR;
 use crate::left_out::LeftOutPredictions;
 use crate::left_out::common_error::common_error;
-use crate::left_out::comparison::{difference, spread};
+use crate::left_out::comparison::difference;
 use crate::left_out::typical::typical_mean;
 use crate::report::identifiability::{Identifiability, LeastSeen};
 use crate::report::trust_report::{ModelKind, TrustReport};
@@ -27,8 +28,6 @@ const STATES: usize = 200;
 const TOGETHER: usize = 10;
 /// The other model counts if its 1 − R² is at most this many times as large.
 const NEARLY_AS_GOOD: f64 = 1.5;
-/// Share of the motion along the least observed direction, times n, below which nothing tested the policy along it.
-const SEEN: f64 = 0.1;
 /// Probability above which a switch is counted.
 const SWITCHED: f64 = 0.5;
 
@@ -48,7 +47,7 @@ pub(crate) fn report(chosen: &ReportInput<'_>) -> TrustReport {
     let noise = noise(data, taken);
     let common = common_error(&taken.left_out, &data.n, (taken.model.noise, &data.noise_weights), &data.groups);
     let least_seen = LeastSeen::of(&data.n);
-    let blind = kept.grouping == Grouping::BlocksOfTime || least_seen.share * (data.n.nrows() as f64) < SEEN;
+    let blind = kept.grouping == Grouping::BlocksOfTime || least_seen.coverage() < LeastSeen::COVERED;
     let across = if blind { CrossPathEvidence::Untested } else { *across };
     let calibration = calibration((standardised(data, taken), common), noise_share(data, taken), across);
     let variance = spread(&taken.actions) / kept.speeds.len() as f64;

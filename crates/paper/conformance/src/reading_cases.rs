@@ -148,7 +148,7 @@ pub(super) fn check_readings(file: &Path) -> anyhow::Result<Vec<Agreement>> {
         let differs = f64::from(u8::from(fit.reading() != case.expected_reading));
         agreements[0].compare([1.0 + differs], &[1.0]);
         let (ours, theirs) = (fit.numbers(), &case.prototype);
-        let least = ours.least_seen.share * ours.least_seen.direction.len() as f64;
+        let least = ours.least_seen.coverage();
         let numbers = [
             (ours.a_s, theirs.a_s),
             (ours.a_d, theirs.a_d),

@@ -12,9 +12,3 @@ pub(super) fn states(rows: &Rows) -> DMatrix<f64> {
     let chosen: Vec<usize> = (0..rows.len()).step_by(every).collect();
     rows.states().select_columns(&chosen)
 }
-
-/// Σ‖u − mean u‖² over columns.
-pub(super) fn spread(actions: &DMatrix<f64>) -> f64 {
-    let mean = actions.column_mean();
-    actions.column_iter().map(|action| (action - &mean).norm_squared()).sum()
-}

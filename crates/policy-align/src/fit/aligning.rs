@@ -19,8 +19,6 @@ use super::progress::Progress;
 use super::recorded_rows::averaged;
 use crate::{Decision, FitError, Prepared, Smoothing, VelocitySource};
 
-/// Positions without recorded velocities are smoothed if noise makes up more than this share of the squared steps.
-const NOISY: f64 = 0.1;
 /// Candidate values of `init_d`: one over the squared width of receptive fields, in units of the states' spread.
 const INIT_D: [f64; 5] = [1.0, 2.5, 6.0, 15.0, 40.0];
 const BANDWIDTHS: [Bandwidth; 3] = [Bandwidth::Narrow, Bandwidth::Medium, Bandwidth::Wide];
@@ -116,7 +114,7 @@ fn integrable(prepared: &Prepared) -> Result<(Demonstrations, Integration, &'sta
         VelocitySource::Fused | VelocitySource::Noisy(_) => {
             (smooth()?, Integration::Velocity, "recorded; positions smoothed (9 samples, degree 2)")
         }
-        VelocitySource::Positions if prepared.noise.step_share > NOISY => {
+        VelocitySource::Positions if prepared.noise.is_noisy() => {
             (smooth()?, Integration::Displacement, "positions smoothed (9 samples, degree 2), then differences")
         }
         VelocitySource::Positions => (averaged, Integration::Displacement, "positions are exact enough"),

@@ -3,11 +3,11 @@
 use std::borrow::Cow;
 
 use gp::{AutoFit, CurlTest, DirectGp, GpError, Grouping, ModelKind, PushTest, Rows, SlopeGp};
-use motion::{Policy, SampleIndex};
+use motion::{Policy, SampleIndex, spread};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
-use super::actions::{spread, states};
+use super::actions::states;
 
 /// Limits for learning halves: the largest number of rows of the whole fit, and the random seed.
 #[derive(Debug, Clone, Copy)]

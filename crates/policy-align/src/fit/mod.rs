@@ -22,7 +22,7 @@ pub(crate) use recorded_rows::{averaged, least_noisy_rows, rows};
 
 use gp::{AutoFit, Grouping, LeftOutRow, TrajectoryErrors};
 use kinematics::RobotModel;
-use motion::{LearntPolicy, Policy};
+use motion::{LearntPolicy, Policy, spread};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
@@ -209,7 +209,7 @@ fn numbers(
     let halves =
         if takes_slope { halves::of_slope(readings, rows, limits) } else { halves::of_direct(readings, rows, limits) };
     let expected = if takes_slope { report.expected_nupe } else { readings.expected_nupe() };
-    let direction_coverage = of.least_seen.share * of.least_seen.direction.len() as f64;
+    let direction_coverage = of.least_seen.coverage();
     // Parts of the same movement test how a policy continues along it, not how it behaves elsewhere. Halves test that if movements go in
     // all directions.
     let own = match of.grouping {
@@ -225,7 +225,7 @@ fn numbers(
             discarded: prepared.demonstrations.n_trajectories() - aligned_count,
             residual: aligned.residual,
             unsupported: aligned.held_out.unsupported as f64 / aligned.held_out.samples.max(1) as f64,
-            difference: aligned.held_out.differences / actions::spread(&readings.actions(rows.states().as_view()))
+            difference: aligned.held_out.differences / spread(&readings.actions(rows.states().as_view()))
                 * rows.len() as f64
                 / aligned.held_out.samples.max(1) as f64,
         }
@@ -264,7 +264,7 @@ fn numbers(
 /// Uncertainty of the policy between the demonstrated movements.
 fn unknown(readings: &AutoFit, prepared: &Prepared, rows: &gp::Rows) -> f64 {
     let states = actions::states(rows);
-    let variance = actions::spread(&readings.actions(states.as_view())) / states.ncols() as f64;
+    let variance = spread(&readings.actions(states.as_view())) / states.ncols() as f64;
     share_unknown(readings, &prepared.demonstrations, variance).unwrap_or(1.0)
 }
 

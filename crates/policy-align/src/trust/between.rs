@@ -1,6 +1,6 @@
 //! Uncertainty of the policy between the demonstrated movements.
 
-use motion::{Demonstrations, LearntPolicy, upper_median};
+use motion::{Demonstrations, LearntPolicy, Trajectory, upper_median};
 use nalgebra::{DMatrix, DVector};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -20,7 +20,7 @@ const SURE: f64 = 0.5;
 pub(crate) fn share_unknown(policy: &dyn LearntPolicy, demonstrations: &Demonstrations, variance: f64) -> Option<f64> {
     let movements = demonstrations.trajectories();
     let mut rng = ChaCha8Rng::seed_from_u64(0);
-    let seconds: Vec<f64> = movements.iter().map(|movement| movement.seconds(0, movement.n_samples() - 1)).collect();
+    let seconds: Vec<f64> = movements.iter().map(Trajectory::duration).collect();
     let usual = upper_median(seconds).expect("there is a demonstration");
     let step = usual / (STATES * STEPS) as f64;
     let mut states: Vec<DVector<f64>> = Vec::with_capacity(STARTS * STATES);

@@ -1,6 +1,6 @@
 //! Roll-outs of the unconstrained policy.
 
-use motion::{Demonstrations, Policy, upper_median};
+use motion::{Demonstrations, Policy, Trajectory, upper_median};
 use nalgebra::DVector;
 
 /// Largest number of starts.
@@ -23,7 +23,7 @@ pub(crate) fn share_leaving(policy: &dyn Policy, demonstrations: &Demonstrations
     }
     let margin = (&high - &low) * BEYOND;
     let (low, high) = (low - &margin, high + margin);
-    let seconds: Vec<f64> = movements.iter().map(|movement| movement.seconds(0, movement.n_samples() - 1)).collect();
+    let seconds: Vec<f64> = movements.iter().map(Trajectory::duration).collect();
     let usual = upper_median(seconds).expect("there is a demonstration");
     let step = TIMES * usual / STEPS as f64;
     let every = movements.len().div_ceil(STARTS);

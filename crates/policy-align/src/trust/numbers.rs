@@ -72,7 +72,7 @@ impl TrustNumbers {
     /// Up to this `expected_error`, the halves may differ.
     pub const LITTLE_EXPECTED_ERROR: f64 = 0.01;
     /// Below this `direction_coverage`, the policy along one direction is a guess.
-    pub const GOOD_COVERAGE: f64 = 0.1;
+    pub const GOOD_COVERAGE: f64 = gp::LeastSeen::COVERED;
     /// Above this share of roll-outs that leave the data, the goal lies outside the data.
     pub const GOOD_LEAVING: f64 = 0.5;
 

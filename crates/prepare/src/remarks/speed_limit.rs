@@ -1,15 +1,20 @@
 //! Detects speeds that are cut off at a limit.
 
-use motion::{Demonstrations, Finding, Verdict};
+use motion::{Demonstrations, Finding, Trajectory, Verdict};
+use nalgebra::{DMatrix, DVector, DVectorView};
 
 use crate::StateChannel;
 use crate::numbers::{percent, short};
-use crate::samples::noise::{Noise, of_velocities, velocity_variance};
+use crate::samples::noise::{Noise, all_velocities, steps_variance, velocity_variance};
 
 /// Relative tolerance for speeds at a limit without noise, because turning shortens steps.
 const EQUAL: f64 = 2e-3;
 /// Half the width of a plateau, in standard deviations of the noise.
 const DEVIATIONS: f64 = 2.5;
+/// Numbers of steps of the spans.
+const SPANS: [usize; 3] = [2, 4, 8];
+/// Spans are tried if noise exceeds this share of the usual velocity.
+const AUDIBLE: f64 = 0.01;
 /// Noise above this share of the limit hides it.
 const LOUD: f64 = 0.1;
 /// Minimum share of samples at the limit.
@@ -21,22 +26,90 @@ const CROWDED: f64 = 3.0;
 /// An axis whose mean velocity is this share of the plateau is pressed, not limited.
 const STEADY: f64 = 0.9;
 
-/// Reports the maximum speed of the robot, or of some of its axes.
+/// Reports the maximum speed of the robot, or of some of its axes. If noise of the positions hides it from single steps, spans of several
+/// steps may show it.
 pub(super) fn speed_limit(demonstrations: &Demonstrations, state: &[StateChannel], noise: &Noise) -> Option<Finding> {
     let deviation = velocity_variance(demonstrations, noise).sqrt();
-    if let Some(plateau) = plateau(of_velocities(demonstrations, |u| u.norm()), deviation) {
-        return Some(plateau.finding(""));
+    let of_samples = Speeds { velocities: all_velocities(demonstrations), deviation, equal: EQUAL };
+    of_samples.limit(state).or_else(|| {
+        let of_steps = steps_variance(demonstrations, noise).sqrt();
+        let of_spans = |steps: usize| Speeds {
+            velocities: over_spans(demonstrations, steps),
+            deviation: of_steps / steps as f64,
+            equal: EQUAL * steps as f64,
+        };
+        let spans = if deviation > AUDIBLE * of_samples.usual() { &SPANS[..] } else { &[] };
+        spans.iter().find_map(|&steps| of_spans(steps).limit(state))
+    })
+}
+
+/// Velocities over spans of several steps, (n, N).
+fn over_spans(demonstrations: &Demonstrations, steps: usize) -> DMatrix<f64> {
+    let movements = demonstrations.trajectories().iter();
+    let of = |movement: &Trajectory| -> Vec<DVector<f64>> {
+        let velocity =
+            |end: usize| (movement.state(end) - movement.state(end - steps)) / movement.seconds(end - steps, end);
+        (steps..movement.n_samples()).map(velocity).collect()
+    };
+    let velocities: Vec<DVector<f64>> = movements.flat_map(of).collect();
+    if velocities.is_empty() { DMatrix::zeros(demonstrations.dim(), 0) } else { DMatrix::from_columns(&velocities) }
+}
+
+/// Velocities whose sizes are compared.
+struct Speeds {
+    /// (n, N).
+    velocities: DMatrix<f64>,
+    /// Standard deviation of their noise along an axis.
+    deviation: f64,
+    /// Relative tolerance for equal speeds without noise.
+    equal: f64,
+}
+
+impl Speeds {
+    /// Root mean square along an axis.
+    fn usual(&self) -> f64 {
+        (self.velocities.norm_squared() / self.velocities.len().max(1) as f64).sqrt()
     }
-    let axes: Vec<(Plateau, &str)> = (0..state.len())
-        .filter_map(|axis| {
-            let plateau = plateau(of_velocities(demonstrations, |u| u[axis].abs()), deviation)?;
-            let along = of_velocities(demonstrations, |u| u[axis]);
-            let mean = along.iter().sum::<f64>() / along.len() as f64;
-            (mean.abs() < STEADY * plateau.speed).then(|| (plateau, state[axis].name.as_str()))
-        })
-        .collect();
-    let names: Vec<&str> = axes.iter().map(|&(_, name)| name).collect();
-    axes.first().map(|(plateau, _)| plateau.finding(&format!(" along {}", names.join(", "))))
+
+    fn limit(&self, state: &[StateChannel]) -> Option<Finding> {
+        let of =
+            |of: &dyn Fn(DVectorView<'_, f64>) -> f64| -> Vec<f64> { self.velocities.column_iter().map(of).collect() };
+        if let Some(plateau) = self.plateau(of(&|u| u.norm())) {
+            return Some(plateau.finding(""));
+        }
+        let axes: Vec<(Plateau, &str)> = (0..state.len())
+            .filter_map(|axis| {
+                let plateau = self.plateau(of(&|u| u[axis].abs()))?;
+                let mean = self.velocities.row(axis).mean();
+                (mean.abs() < STEADY * plateau.speed).then(|| (plateau, state[axis].name.as_str()))
+            })
+            .collect();
+        let names: Vec<&str> = axes.iter().map(|&(_, name)| name).collect();
+        axes.first().map(|(plateau, _)| plateau.finding(&format!(" along {}", names.join(", "))))
+    }
+
+    /// The fastest speed that many samples share.
+    fn plateau(&self, mut speeds: Vec<f64>) -> Option<Plateau> {
+        speeds.sort_by(f64::total_cmp);
+        let samples = speeds.len() as f64;
+        let below = |speed: f64| speeds.partition_point(|&other| other < speed);
+        let within = |low: f64, high: f64| (below(high) - below(low)) as f64;
+        let first = speeds.len().saturating_sub(1 + (samples * (FASTER + SHARE)) as usize);
+        let crowd = |&speed: &f64| {
+            let width = (self.equal * speed).max(DEVIATIONS * self.deviation);
+            (within(speed - width, speed + width), speed, width)
+        };
+        let (count, speed, width) = speeds[first..].iter().map(crowd).max_by(|a, b| a.0.total_cmp(&b.0))?;
+        let slower = within(speed - 3.0 * width, speed - width);
+        let faster = (speeds.len() - below(speed + width)) as f64;
+        let is_limit = self.deviation <= LOUD * speed
+            && speed > 0.0
+            && count >= SHARE * samples
+            && faster <= FASTER * samples
+            && count >= CROWDED * slower;
+        let median = below(speed - width) + (count / 2.0) as usize;
+        is_limit.then(|| Plateau { speed: speeds[median], share: count / samples })
+    }
 }
 
 struct Plateau {
@@ -54,26 +127,4 @@ impl Plateau {
             next: "at the limit only the policy's direction is observed: raise the limit, teach more slowly, or record the velocities that were commanded".to_owned(),
         }
     }
-}
-
-/// The fastest speed that many samples share.
-fn plateau(mut speeds: Vec<f64>, deviation: f64) -> Option<Plateau> {
-    speeds.sort_by(f64::total_cmp);
-    let samples = speeds.len() as f64;
-    let below = |speed: f64| speeds.partition_point(|&other| other < speed);
-    let within = |low: f64, high: f64| (below(high) - below(low)) as f64;
-    let first = speeds.len().saturating_sub(1 + (samples * (FASTER + SHARE)) as usize);
-    let crowd = |&speed: &f64| {
-        let width = (EQUAL * speed).max(DEVIATIONS * deviation);
-        (within(speed - width, speed + width), speed, width)
-    };
-    let (count, speed, width) = speeds[first..].iter().map(crowd).max_by(|a, b| a.0.total_cmp(&b.0))?;
-    let slower = within(speed - 3.0 * width, speed - width);
-    let faster = (speeds.len() - below(speed + width)) as f64;
-    let is_limit = deviation <= LOUD * speed
-        && speed > 0.0
-        && count >= SHARE * samples
-        && faster <= FASTER * samples
-        && count >= CROWDED * slower;
-    is_limit.then_some(Plateau { speed, share: count / samples })
 }

@@ -33,43 +33,63 @@ const KEPT: f64 = 0.9;
 /// Share of the squared velocities that a lag may change before the policy is in doubt.
 const HARMLESS: f64 = 0.15;
 
-/// Reports the shift that makes velocities agree with the steps, and repairs late ones. Returns whether the positions replace them: if
-/// the noise of the positions changes the steps less than the shift does. Otherwise they are shifted. Early velocities may be commands.
-pub(crate) fn repaired_by_positions(episodes: &mut [Episode], noise: &Noise, notes: &mut Notes) -> bool {
+/// What is done about velocities that were recorded at another time than the steps that they match.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Remedy {
+    /// The positions replace late velocities, because their noise changes the steps less than the lag does.
+    Positions,
+    /// Late velocities are shifted.
+    Shift,
+    /// Late velocities are only reported: an episode is too short to be shifted.
+    None,
+    /// Early velocities are only reported, because they may be commands.
+    Command,
+}
+
+/// Reports the shift that makes velocities agree with the steps, and repairs late ones. Returns whether the positions replace them.
+pub(crate) fn repair(episodes: &mut [Episode], noise: &Noise, notes: &mut Notes) -> bool {
     let Some(lag) = lag(episodes, noise) else { return false };
-    let late = lag.seconds > 0.0;
-    let replaced = late && noise.step_share < lag.changed;
-    let samples = lag.half_samples.unsigned_abs().div_ceil(2);
-    let shifted = late && !replaced && episodes.iter().all(|episode| episode.n_samples() > samples + 1);
-    let next = match (replaced, shifted, late) {
-        (true, ..) => "they are taken from the positions; shift these columns to use them",
-        (_, true, _) => "they are shifted; --integration displacement takes velocities from the positions instead",
-        (_, _, true) => "shift these columns, or --integration displacement takes velocities from the positions",
-        (_, _, false) => {
-            "correct if they are commands that the robot follows with this delay; otherwise shift them, or --integration displacement takes velocities from the positions"
-        }
+    let half_samples = lag.half_samples.unsigned_abs();
+    let samples = half_samples.div_ceil(2);
+    let (remedy, next) = if lag.seconds <= 0.0 {
+        (
+            Remedy::Command,
+            "correct if they are commands that the robot follows with this delay; otherwise shift them, or --integration displacement takes velocities from the positions",
+        )
+    } else if noise.step_share < lag.changed {
+        (Remedy::Positions, "they are taken from the positions; shift these columns to use them")
+    } else if episodes.iter().all(|episode| episode.n_samples() > samples + 1) {
+        (Remedy::Shift, "they are shifted; --integration displacement takes velocities from the positions instead")
+    } else {
+        (Remedy::None, "shift these columns, or --integration displacement takes velocities from the positions")
     };
-    let (seconds, when) = (short(lag.seconds.abs()), if late { "later" } else { "earlier" });
+    let is_repaired = matches!(remedy, Remedy::Positions | Remedy::Shift);
+    let seconds = short(lag.seconds.abs());
+    let when = if remedy == Remedy::Command { "earlier" } else { "later" };
     notes.found(
-        if lag.changed > HARMLESS && !replaced && !shifted { Verdict::Doubtful } else { Verdict::Good },
+        if lag.changed > HARMLESS && !is_repaired { Verdict::Doubtful } else { Verdict::Good },
         format!(
             "velocities were recorded {seconds} s {when} than the steps that they match (this changes {} of them)",
             percent(lag.changed)
         ),
         next,
     );
-    if replaced {
-        let why = format!("those recorded are {seconds} s late, and noise of positions is smaller than the difference");
-        notes.decided("velocities", "from positions", why, "--integration");
-    }
-    if shifted {
-        let why = format!("they match the steps there; so the last {} have none", counted(samples, "sample"));
-        notes.decided("shift of velocities", format!("{seconds} s sooner"), why, "--integration");
-        for episode in episodes {
-            *episode = sooner(episode, lag.half_samples.unsigned_abs());
+    match remedy {
+        Remedy::Positions => {
+            let why =
+                format!("those recorded are {seconds} s late, and noise of positions is smaller than the difference");
+            notes.decided("velocities", "from positions", why, "--integration");
         }
+        Remedy::Shift => {
+            let why = format!("they match the steps there; so the last {} have none", counted(samples, "sample"));
+            notes.decided("shift of velocities", format!("{seconds} s sooner"), why, "--integration");
+            for episode in episodes {
+                *episode = sooner(episode, half_samples);
+            }
+        }
+        Remedy::None | Remedy::Command => {}
     }
-    replaced
+    remedy == Remedy::Positions
 }
 
 /// The episode with each sample's velocity taken from that many half samples later; the last samples, which have none, are left out.

@@ -103,7 +103,7 @@ pub(crate) fn doubt(demonstrations: &Demonstrations, notes: &mut Notes) {
     let [milliseconds, microseconds] = UNITS;
     let unit = if usual <= SLOW * milliseconds.a_second { milliseconds } else { microseconds };
     let movement = &demonstrations.trajectories()[0];
-    let [step, episode] = [usual, movement.seconds(0, movement.n_samples() - 1)].map(short);
+    let [step, episode] = [usual, movement.duration()].map(short);
     notes.found(
         Verdict::Doubtful,
         format!("samples are {step} s apart, an episode lasts {episode} s; stamps may be {}", unit.name),

@@ -59,7 +59,7 @@ pub(crate) fn decide(
         notes.decided("velocities", "recorded", "used as requested", "--integration");
         return Agreement::Own;
     }
-    if lag::repaired_by_positions(episodes, noise, notes) {
+    if lag::repair(episodes, noise, notes) {
         discard(episodes);
         return Agreement::None;
     }

@@ -1,7 +1,7 @@
 use std::borrow::Cow;
 
 use motion::{Demonstrations, Verdict};
-use nalgebra::{DVector, DVectorView};
+use nalgebra::{DMatrix, DVector, DVectorView};
 use serde::{Deserialize, Serialize};
 use smoothing::{PositionNoise, VelocityNoise};
 
@@ -12,7 +12,7 @@ use crate::repairs::agreement::Agreement;
 
 /// Positions count as exact if noise is less than this share of the squared steps.
 const EXACT: f64 = 0.01;
-/// Above this share noise is reported.
+/// Share of noise in the squared steps above which positions are noisy.
 const NOISY: f64 = 0.1;
 /// Up to this share of their squares, noise of velocities does not prevent them from correcting positions.
 const CORRECTING: f64 = 1e-3;
@@ -38,6 +38,11 @@ pub struct Noise {
 }
 
 impl Noise {
+    /// Whether noise makes up so much of the steps that it is reported, and positions are smoothed before they are integrated.
+    pub fn is_noisy(&self) -> bool {
+        self.step_share > NOISY
+    }
+
     /// Whether recorded velocities are exact enough to correct positions, or to make smoothing unnecessary.
     pub fn velocities_correct_positions(&self) -> bool {
         self.velocity_share.is_none_or(|share| share <= CORRECTING)
@@ -108,12 +113,23 @@ pub(crate) fn of_velocities(demonstrations: &Demonstrations, of: impl Fn(DVector
     found
 }
 
+/// These velocities, (n, M).
+pub(crate) fn all_velocities(demonstrations: &Demonstrations) -> DMatrix<f64> {
+    let mut all = Vec::with_capacity(demonstrations.n_samples() * demonstrations.dim());
+    each_velocity(demonstrations, |velocity| all.extend(velocity.iter()));
+    DMatrix::from_vec(demonstrations.dim(), all.len() / demonstrations.dim(), all)
+}
+
 /// Variance of the noise of [`each_velocity`] per axis, averaged over axes; 0 if it cannot be estimated.
 pub(crate) fn velocity_variance(demonstrations: &Demonstrations, noise: &Noise) -> f64 {
-    let dim = demonstrations.dim() as f64;
-    let positions = noise.positions.iter().flatten().map(|deviation| deviation.powi(2)).sum::<f64>() / dim;
     VelocityNoise::of(demonstrations)
-        .map_or(2.0 * positions / demonstrations.time_step().powi(2), |noise| noise.variance / dim)
+        .map_or(steps_variance(demonstrations, noise), |noise| noise.variance / demonstrations.dim() as f64)
+}
+
+/// The same of the velocities of steps.
+pub(crate) fn steps_variance(demonstrations: &Demonstrations, noise: &Noise) -> f64 {
+    let positions = noise.positions.iter().flatten().map(|deviation| deviation.powi(2)).sum::<f64>();
+    2.0 * positions / (demonstrations.dim() as f64 * demonstrations.time_step().powi(2))
 }
 
 /// The source of velocities if the user requested smoothing.
@@ -166,7 +182,7 @@ pub(crate) fn decide(
         }
     };
     notes.decided("smoothing", value, why, "--smooth");
-    if recorded == VelocitySource::Positions && share > NOISY {
+    if recorded == VelocitySource::Positions && noise.is_noisy() {
         notes.found(
             Verdict::Good,
             format!("noise makes {} of the squared steps", percent_of_all(share)),

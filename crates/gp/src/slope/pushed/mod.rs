@@ -5,6 +5,7 @@ mod contradicted;
 use std::borrow::Cow;
 
 use crate::Rows;
+use crate::left_out::NEARLY_EXACT;
 use crate::rows::kept::Kept;
 use crate::slope::all_rows::{More, OnAllRows, on_all_rows};
 use crate::slope::cross_path::CrossPathEvidence;
@@ -47,8 +48,6 @@ const OF_A_STRETCH: usize = 4;
 const FINALISTS: usize = 3;
 /// Their expected error is at most this multiple of the least.
 const NEARLY: f64 = 2.0;
-/// Expected error up to which task spaces are not tried.
-const NEARLY_EXACT: f64 = 1e-3;
 
 /// The search on stretches in the task space with the least expected error, if that is below the error expected of `outcome`.
 fn in_task_space(gp: &SlopeGp, rows: &Rows, (kept, own): (&Kept, &Kept), outcome: &Outcome) -> Option<Pushed> {
