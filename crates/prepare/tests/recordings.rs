@@ -745,16 +745,19 @@ proptest! {
         }
     }
 
-    /// q and −q are one orientation: recordings with sign changes give the same result as without.
+    /// q and −q are one orientation: recordings with sign changes give the same result as without, also if noise changes the norm.
     #[test]
-    fn signs_of_quaternions(flips in prop::collection::vec((1..12usize, 0..SAMPLES), 1..6)) {
+    fn signs_of_quaternions(
+        flips in prop::collection::vec((1..12usize, 0..SAMPLES), 1..6), noise in prop::sample::select(vec![0.0, 1e-3, 5e-3]),
+    ) {
         let plain = moving(&["x", "qx", "qy", "qz", "qw"], |k, t| {
             let (angle, rate) = (0.3 * k as f64 + 0.8 * (-t).exp(), -0.4 * (-t).exp());
             let (s, c) = (angle / 2.0).sin_cos();
             let axis = [0.6, 0.8 * (k as f64).cos(), 0.8 * (k as f64).sin()];
             let q = DVector::from_vec(vec![t.sin(), axis[0] * s, axis[1] * s, axis[2] * s, c]);
+            let off = DVector::from_fn(5, |axis, _| noise * ((1e4 * (k as f64 + 7.0 * axis as f64) + 1e3 * t).sin() * 43_758.545_3).fract());
             let u = DVector::from_vec(vec![t.cos(), axis[0] * c * rate, axis[1] * c * rate, axis[2] * c * rate, -s * rate]);
-            (q, u)
+            (q + off, u)
         });
         let mut flipped = plain.clone();
         for (episode, from) in flips {

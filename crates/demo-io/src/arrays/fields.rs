@@ -2,7 +2,7 @@
 
 use crate::arrays::array::{ArraySpec, Kind};
 use crate::arrays::within::{Part, Within, arrays, parts};
-use crate::names::selection::{flags, glob};
+use crate::names::selection::{flags, is_not_state};
 use crate::raw::MOST_CHANNELS;
 use crate::rows::roles::{is_time, named, no_column, shortened, velocity_names};
 use crate::{Fault, ReadError, ReadOptions};
@@ -77,20 +77,7 @@ const VELOCITIES: [&str; 16] = [
     "joint_velocities",
     "qvel",
 ];
-const NEVER: [&str; 12] = [
-    "action*",
-    "act",
-    "acts",
-    "*reward*",
-    "*done*",
-    "*terminal*",
-    "*effort*",
-    "*torque*",
-    "*current*",
-    "*temperature*",
-    "*image*",
-    "*rgb*",
-];
+const NEVER: [&str; 8] = ["action*", "act", "acts", "*reward*", "*done*", "*terminal*", "*image*", "*rgb*"];
 
 /// Assigns roles to arrays that all belong to one movement or to one set of movements.
 pub(crate) fn assign(described: &[ArraySpec], options: &ReadOptions, place: &str) -> Result<Fields, ReadError> {
@@ -229,10 +216,7 @@ fn guess_state(
 ) -> Result<Vec<usize>, ReadError> {
     let known = |index: usize| {
         let name = described[index].name.to_lowercase();
-        fields.has_role(index)
-            || ignored[index]
-            || VELOCITIES.contains(&&name[..])
-            || NEVER.iter().any(|pattern| glob(pattern, &name))
+        fields.has_role(index) || ignored[index] || VELOCITIES.contains(&&name[..]) || is_not_state(&name, &NEVER)
     };
     let candidates: Vec<usize> = (0..described.len()).filter(|&index| !known(index)).collect();
     for name in STATES {

@@ -9,7 +9,7 @@ pub(crate) use self::content::{Content, HEAD_ROWS, content};
 use self::names::{base, is_one_of, nanoseconds_of};
 pub(crate) use self::names::{is_time, unit, velocity_names};
 
-use crate::names::selection::{flags, glob, select};
+use crate::names::selection::{flags, is_not_state, select};
 use crate::{Fault, ReadError, ReadOptions};
 use motion::is_called_context;
 
@@ -60,7 +60,7 @@ const EPISODES: [&str; 14] = [
     "run",
 ];
 const CONSTRAINTS: [&str; 4] = ["constraint", "condition", "task", "task_index"];
-const NEVER_STATE: [&str; 7] = ["*effort*", "*torque*", "*current*", "*temperature*", "reward", "done", "success"];
+const OUTCOMES: [&str; 3] = ["reward", "done", "success"];
 
 /// Assigns a role to every column of `columns`; `place` names the file in errors.
 pub(crate) fn assign(columns: &[Column], options: &ReadOptions, place: &str) -> Result<Roles, ReadError> {
@@ -99,8 +99,7 @@ pub(crate) fn assign(columns: &[Column], options: &ReadOptions, place: &str) -> 
         let found = free.iter().position(|&index| nanoseconds.contains(&base(names[index])));
         roles.nanoseconds = found.map(|at| free.remove(at));
     }
-    let pointless = |name: &str| NEVER_STATE.iter().any(|pattern| glob(pattern, &name.to_ascii_lowercase()));
-    roles.ignored.extend(free.extract_if(.., |index| pointless(names[*index])));
+    roles.ignored.extend(free.extract_if(.., |index| is_not_state(names[*index], &OUTCOMES)));
     roles.state_guessed = options.state.is_empty();
     if roles.state_guessed {
         roles.words = free.extract_if(.., |index| columns[*index].content == Content::Words).collect();

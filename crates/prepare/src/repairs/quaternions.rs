@@ -1,6 +1,7 @@
 //! Orientations as unit quaternions; q and −q are the same orientation.
 
 use motion::{Channel, Episode, Verdict};
+use nalgebra::{DVectorView, Vector4};
 
 use crate::notes::Notes;
 use crate::numbers::counted;
@@ -8,6 +9,10 @@ use crate::options::Repair;
 
 /// Tolerance for the norm of a unit quaternion.
 const UNIT: f64 = 1e-3;
+/// Noisy quaternions: their norms deviate from 1 by at most this, as a root mean square …
+const NOISY: f64 = 0.02;
+/// … and by this share of the spread of the four channels, so that they vary on a sphere.
+const SPHERE: f64 = 0.1;
 /// A step longer than this is a change of sign; opposite quaternions are 2 apart.
 const FLIP: f64 = 1.0;
 
@@ -42,14 +47,26 @@ fn report_signs(names: &str, flips: usize, notes: &mut Notes) {
     );
 }
 
-/// Whether four channels have norm 1 throughout, and move.
+/// Whether four channels have norm 1 throughout, up to noise, and move.
 fn is_quaternion(episodes: &[Episode], first: usize) -> bool {
-    let mut columns = episodes.iter().flat_map(|episode| episode.positions.column_iter());
     let moves = episodes.iter().any(|episode| {
         let part = episode.positions.rows(first, 4);
         part.column_iter().any(|q| q != part.column(0))
     });
-    moves && columns.all(|x| (x.rows(first, 4).norm() - 1.0).abs() <= UNIT)
+    let columns = || episodes.iter().flat_map(|episode| episode.positions.column_iter());
+    let is_unit = |q: DVectorView<'_, f64>| (q.rows(first, 4).norm() - 1.0).abs() <= UNIT;
+    moves && (columns().all(is_unit) || is_noisy_quaternion(columns().map(|x| x.fixed_rows::<4>(first).into_owned())))
+}
+
+fn is_noisy_quaternion(all: impl Iterator<Item = Vector4<f64>> + Clone) -> bool {
+    let count = all.clone().count() as f64;
+    // q and −q are the same: signs must not add to the spread.
+    let Some(reference) = all.clone().next() else { return false };
+    let signed = all.map(|q| if q.dot(&reference) < 0.0 { -q } else { q });
+    let mean = signed.clone().sum::<Vector4<f64>>() / count;
+    let spread = (signed.clone().map(|q| (q - mean).norm_squared()).sum::<f64>() / count).sqrt();
+    let off = (signed.map(|q| (q.norm() - 1.0).powi(2)).sum::<f64>() / count).sqrt();
+    off <= NOISY.min(SPHERE * spread)
 }
 
 /// Makes signs consistent; returns the number of sign changes, within movements and between them.

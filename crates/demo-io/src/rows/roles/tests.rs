@@ -27,6 +27,7 @@ fn usual_names_are_understood() {
         (&["a_pos", "b_pos", "a_vel", "b_vel"], None, None, &[0, 1], &[2, 3]),
         (&["x", "x_dot", "y", "y_dot", "time [s]"], Some(4), None, &[0, 2], &[1, 3]),
         (&["joint1", "joint1.vel", "effort1", "reward"], None, None, &[0], &[1]),
+        (&["x", "y", "vx", "vy", "Force_X", "force y", "wrench.z"], None, None, &[0, 1], &[2, 3]),
         (&["x [m]", "y [m]", "vx [m/s]", "vy [m/s]", "take"], None, Some(4), &[0, 1], &[2, 3]),
         (&["Episode ID", "Time (s)", "pos x", "pos y", "vel x", "vel y"], Some(1), Some(0), &[2, 3], &[4, 5]),
         (&["x1", "y1", "v", "vel"], None, None, &[0, 1, 2, 3], &[]),
