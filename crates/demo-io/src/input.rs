@@ -34,7 +34,7 @@ const HEAD: u64 = 256 << 10;
 impl<'a> Input<'a> {
     pub(crate) fn new(path: &Path, options: &'a ReadOptions) -> Result<Self, ReadError> {
         let name = name_of(path);
-        let unreadable = |error: std::io::Error| unreadable(&error, &name);
+        let unreadable = |error: std::io::Error| unreadable(&error, &path.display().to_string());
         let (file, len) = regular_file::open(path).map_err(unreadable)?;
         let mut head = Vec::new();
         file.take(len.min(HEAD)).read_to_end(&mut head).map_err(unreadable)?;
@@ -102,7 +102,7 @@ impl<'a> Input<'a> {
     }
 
     pub(crate) fn open(&self) -> Result<File, ReadError> {
-        File::open(&self.path).map_err(|error| unreadable(&error, &self.name))
+        File::open(&self.path).map_err(|error| unreadable(&error, &self.path.display().to_string()))
     }
 }
 

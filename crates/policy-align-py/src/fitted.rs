@@ -17,7 +17,7 @@ use crate::large::{Further, digests};
 use crate::options::{Learning, Preparing};
 use crate::parts::in_parts;
 use crate::recordings::{Recorded, Recordings, names_of};
-use crate::refusal::{Refusal, file_or};
+use crate::refusal::{Refusal, file_or, of_file};
 use crate::rolling::{self, Constraint};
 use crate::{model_document, pool};
 
@@ -223,7 +223,8 @@ impl Fitted {
     ) -> PyResult<String> {
         let options = self.prepared_alike(preparing)?;
         let (inner, model) = (Arc::clone(&recordings.inner), Arc::clone(&self.model));
-        let text = robot.as_ref().map(|path| py.detach(|| demo_io::read_text(path))).transpose()?;
+        let read = |path: &PathBuf| py.detach(|| demo_io::read_text(path)).map_err(|error| of_file(error, path));
+        let text = robot.as_ref().map(read).transpose()?;
         let place = robot.map_or_else(String::new, |path| path.display().to_string());
         let found = interruptible(py, move |_: &_| {
             let links = text.map(|text| TaskLinks::from_urdf(&text, &links, &model.channels())).transpose();

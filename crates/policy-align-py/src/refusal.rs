@@ -1,6 +1,7 @@
 //! Converts errors of the Rust crates to `PolicyAlignError`: the program's three lines, with the remedy in
 //! Python's terms.
 
+use std::io;
 use std::path::Path;
 
 use align::AlignError;
@@ -141,10 +142,23 @@ impl From<Refusal> for PyErr {
 /// System errors become `OSError`, as usual in Python.
 pub(crate) fn file_or(error: ModelError, path: &Path) -> PyErr {
     match error {
-        ModelError::File(error) => match error.raw_os_error() {
-            Some(code) => PyOSError::new_err((code, error.to_string(), path.to_owned())),
-            None => error.into(),
-        },
+        ModelError::File(error) => of_file(error, path),
         error => Refusal::model(&error, &path.display().to_string()).into(),
     }
+}
+
+/// The subclass of `OSError` that belongs to the system's error, with the path that the user gave: the error of a temporary file names
+/// another.
+pub(crate) fn of_file(error: io::Error, path: &Path) -> PyErr {
+    const ENOENT: i32 = 2;
+    const EACCES: i32 = 13;
+    let code = error.raw_os_error().or(match error.kind() {
+        io::ErrorKind::NotFound => Some(ENOENT),
+        io::ErrorKind::PermissionDenied => Some(EACCES),
+        _ => None,
+    });
+    let Some(code) = code else { return error.into() };
+    let text = io::Error::from_raw_os_error(code).to_string();
+    let reason = text.split(" (os error").next().unwrap_or(&text).to_owned();
+    PyOSError::new_err((code, reason, path.as_os_str().to_owned()))
 }

@@ -8,7 +8,7 @@ use policy_align::{ConstraintFileError, ConstraintSet, JointLimits, Model, RollO
 use pyo3::prelude::*;
 
 use crate::arrays::{array, matrix};
-use crate::refusal::Refusal;
+use crate::refusal::{Refusal, of_file};
 
 /// The constraint of a roll-out.
 #[derive(FromPyObject)]
@@ -83,13 +83,13 @@ pub(crate) fn follow(
         Constraint::Rows(rows) => ConstraintSet::normal(matrix(&rows).transpose(), channels.len())
             .map_err(|reason| Refusal::new(reason, "constraint", "an array (k, n), one row a direction"))?,
         Constraint::File(path) => ConstraintSet::load(&path, &channels).map_err(|error| match error {
-            ConstraintFileError::File { source, .. } => PyErr::from(source),
+            ConstraintFileError::File { source, .. } => of_file(source, &path),
             error => Refusal::constraints(&error, &path.display().to_string()).into(),
         })?,
         Constraint::Function(Some(function)) => of_function(function, Arc::clone(&raised)),
     };
     let limits = limits.map(|path| -> PyResult<JointLimits> {
-        let text = demo_io::read_text(path)?;
+        let text = demo_io::read_text(path).map_err(|error| of_file(error, path))?;
         let wrong = |reason: String| Refusal::new(reason, path.display().to_string(), "a robot with these joints");
         Ok(JointLimits::from_urdf(&text, &channels).map_err(wrong)?)
     });

@@ -149,10 +149,17 @@ fn about_error(numbers: &TrustNumbers, found: &mut dyn FnMut(Verdict, String, &s
         );
     }
     if let Some(halves) = numbers.halves.filter(|&halves| halves > TrustNumbers::GOOD_HALVES) {
+        let (verdict, next) = match numbers.good_halves() {
+            Some(_) => (Verdict::Doubtful, "record more movements, from other starts, or reduce noise"),
+            None => (
+                Verdict::Good,
+                "half of the movements would be too few; all together suffice, as the expected error is small",
+            ),
+        };
         found(
-            if numbers.good_halves().is_some() { Verdict::Doubtful } else { Verdict::Good },
+            verdict,
             format!("policies learnt{by_gp} from two halves of the movements differ by {}", percent(halves)),
-            "record more movements, from other starts, or reduce noise",
+            next,
         );
     }
     if numbers.unknown > UNKNOWN {

@@ -65,7 +65,7 @@ pub(crate) struct ReadFlags {
     #[arg(long, value_name = "PATTERNS")]
     ignore: Vec<String>,
     /// Seconds between samples, instead of stamps
-    #[arg(long, value_name = "SECONDS")]
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     pub(crate) dt: Option<f64>,
     /// Unit names, as m or x=m; no number changes
     #[arg(long, value_name = "UNITS")]
@@ -83,7 +83,7 @@ pub(crate) struct ReadFlags {
     #[arg(long)]
     sort: bool,
     /// Split episodes at longer gaps, and where stamps go back
-    #[arg(long, value_name = "SECONDS")]
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     split_gap: Option<f64>,
     /// Remove samples at rest at either end
     #[arg(long)]

@@ -16,10 +16,10 @@ pub(crate) struct RollOutFlags {
     #[arg(long, value_name = "FILE.toml")]
     constraint: Option<PathBuf>,
     /// Longest duration [default: 3 times the longest episode]
-    #[arg(long, value_name = "SECONDS")]
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     seconds: Option<f64>,
     /// Time between samples [default: the model's time step]
-    #[arg(long, value_name = "SECONDS")]
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     step: Option<f64>,
     /// Robot whose joint limits stop the roll-out
     #[arg(long, value_name = "FILE.urdf")]
