@@ -4,13 +4,7 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::Rows;
 use crate::rows::task_space::TaskSpace;
-use crate::stretches::noise::{known_noise, noise_of_differences, velocity_noise};
-
-/// If velocities differ from sample to sample by less than this share of their known variance, they share their errors, as slopes
-/// of smoothed positions do.
-const SMOOTH: f64 = 0.25;
-/// Number of samples that then share one error.
-const SMOOTHED: f64 = 8.0;
+use crate::stretches::noise::{sharing, velocity_noise};
 
 /// The least of the upper bounds (S20) in all spaces; increased if samples share their errors.
 pub(super) fn noise(rows: &Rows, movements: &[&[usize]], spaces: &[TaskSpace]) -> Option<f64> {
@@ -23,8 +17,7 @@ pub(super) fn noise(rows: &Rows, movements: &[&[usize]], spaces: &[TaskSpace]) -
     };
     let recorded = velocity_noise(rows.velocities(), rows.variances(), movements);
     let least = recorded.into_iter().chain(spaces.iter().filter_map(in_space)).reduce(f64::min)?;
-    let is_smooth = noise_of_differences(rows.velocities(), movements)? < SMOOTH * known_noise(rows.variances());
-    Some(if is_smooth { SMOOTHED * least } else { least })
+    Some(sharing(rows, movements) * least)
 }
 
 #[cfg(test)]
@@ -36,6 +29,7 @@ mod tests {
     use rand_distr::StandardNormal;
 
     use super::*;
+    use crate::stretches::noise::SMOOTHED;
 
     proptest! {
         /// Independent noise counts once in any number of dimensions, smooth noise more.

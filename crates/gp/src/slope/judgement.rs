@@ -130,7 +130,7 @@ fn calibration((z_squared, common): (f64, f64), noise_share: f64, across: CrossP
     z_squared.max(common).max(least)
 }
 
-fn root_mean_square(actions: &DMatrix<f64>) -> f64 {
+pub(crate) fn root_mean_square(actions: &DMatrix<f64>) -> f64 {
     (actions.norm_squared() / actions.ncols() as f64).sqrt()
 }
 

@@ -20,7 +20,7 @@ use rayon::prelude::*;
 
 use crate::Rows;
 use cut::Cut;
-use noise::velocity_noise;
+use noise::{sharing, velocity_noise};
 use segmentation::Segment;
 use view::{Through, View};
 use whole::{least_length, whole};
@@ -83,7 +83,7 @@ impl Stretches {
         }
         let at: Vec<usize> = (0..rows.len()).collect();
         let parts = parts(rows, &at);
-        let noise = velocity_noise(&view.velocities, rows.variances(), &parts)?;
+        let noise = sharing(rows, &parts) * velocity_noise(&view.velocities, rows.variances(), &parts)?;
         let cuts = Cut::each(rows, view, &parts, (switches, noise));
         let switching = Cut::switches(&cuts);
         let of_part = |(part, Cut { few, found, .. }): (&&[usize], &Cut)| {

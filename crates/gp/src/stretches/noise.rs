@@ -2,6 +2,7 @@
 
 use nalgebra::DMatrix;
 
+use crate::Rows;
 use crate::stretches::centred;
 use motion::upper_median;
 
@@ -15,6 +16,12 @@ const QUANTILE: f64 = 0.3;
 const TIMES: f64 = 3.0;
 /// Minimum variance, in mean squares of the velocities, due to rounding.
 const ROUNDING: f64 = 1e-14;
+
+/// If velocities differ from sample to sample by less than this share of their known variance, they share their errors, as slopes
+/// of smoothed positions do.
+const SMOOTH: f64 = 0.25;
+/// Number of samples that then share one error.
+pub(crate) const SMOOTHED: f64 = 8.0;
 
 /// s², the variance of a velocity along an axis: the smaller of two upper bounds. Third differences also contain the curvature
 /// of the motion; the least extent of windows also contains switches and free movement. At least the median of known variances;
@@ -35,13 +42,20 @@ pub(crate) fn velocity_noise(
     Some(from_differences.min(TIMES * from_windows).max(ROUNDING * mean_square).max(known_noise(variances)))
 }
 
+/// The number of samples that share one error of their velocities.
+pub(crate) fn sharing(rows: &Rows, movements: &[&[usize]]) -> f64 {
+    let differences = noise_of_differences(rows.velocities(), movements);
+    let is_smooth = differences.is_some_and(|differences| differences < SMOOTH * known_noise(rows.variances()));
+    if is_smooth { SMOOTHED } else { 1.0 }
+}
+
 /// The median of known variances, 0 if none are known.
-pub(crate) fn known_noise(variances: Option<&[f64]>) -> f64 {
+fn known_noise(variances: Option<&[f64]>) -> f64 {
     variances.and_then(|variances| upper_median(variances.to_vec())).unwrap_or(0.0)
 }
 
 /// The variance of a velocity along an axis from third differences, an upper bound; `None` without four successive samples.
-pub(crate) fn noise_of_differences(velocities: &DMatrix<f64>, movements: &[&[usize]]) -> Option<f64> {
+fn noise_of_differences(velocities: &DMatrix<f64>, movements: &[&[usize]]) -> Option<f64> {
     let dim = velocities.nrows();
     let velocity = |row: usize| velocities.column(row);
     let third =

@@ -192,7 +192,7 @@ impl Stretches {
     }
 
     /// Root mean square of the pushes A⁺b, in units of the state per second.
-    fn push(&self) -> f64 {
+    pub(crate) fn push(&self) -> f64 {
         let (squares, count) =
             self.right().fold((0.0, 0), |(sum, count), stretch| (sum + stretch.push.norm_squared(), count + 1));
         (squares / f64::from(count)).sqrt()

@@ -9,7 +9,7 @@ use crate::left_out::NEARLY_EXACT;
 use crate::rows::kept::Kept;
 use crate::slope::all_rows::{More, OnAllRows, on_all_rows};
 use crate::slope::cross_path::CrossPathEvidence;
-use crate::slope::judgement::{ReportInput, report};
+use crate::slope::judgement::{ReportInput, report, root_mean_square};
 use crate::slope::push_test::PushTest;
 use crate::slope::search::{Outcome, outcome, outcome_of_nearly_best};
 use crate::slope::slope_gp::SlopeGp;
@@ -43,6 +43,8 @@ const TIMES: [usize; 3] = [6, 2, 3];
 const MOST: [usize; 3] = [2400, 400, 1500];
 /// From this many rows per stretch on, in the recorded coordinates, more rows add almost nothing.
 const OF_A_STRETCH: usize = 4;
+/// Pushes below this share of the policy's root mean square may be none.
+const SMALL: f64 = 0.01;
 /// Number of candidates with the least expected error on few rows that are fitted to more rows, because few rows do not reveal a wrong
 /// stretch among many.
 const FINALISTS: usize = 3;
@@ -58,14 +60,21 @@ fn in_task_space(gp: &SlopeGp, rows: &Rows, (kept, own): (&Kept, &Kept), outcome
     if before <= NEARLY_EXACT {
         return None;
     }
+    let speed = root_mean_square(&outcome.taken.actions);
     let views = (0..rows.task_spaces().len()).filter_map(|space| View::in_space(rows, space));
     let found = views.flat_map(|view| {
         let sought = Stretches::of(rows, &view, Switches::Sought);
         let same = rows.labels().is_some() || sought.as_ref().is_some_and(Stretches::are_whole);
         let whole = if same { None } else { Stretches::of(rows, &view, Switches::None) };
-        let known =
-            |found: Stretches| if found.push_is_significant() { found } else { found.without_push(rows, &view) };
-        [sought, whole].map(|found| found.map(known)).into_iter().flatten()
+        [sought, whole].into_iter().flatten().flat_map(move |found| {
+            let without = found.without_push(rows, &view);
+            match found.push_is_significant() {
+                true if found.push() > SMALL * speed => vec![found],
+                // Noise that samples share, as after smoothing, looks like a small push.
+                true => vec![without, found],
+                false => vec![without],
+            }
+        })
     });
     let means = rows.averaged();
     let tried = found.filter_map(|found| {
