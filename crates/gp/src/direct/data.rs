@@ -10,7 +10,7 @@ use crate::kernel::whitening::Whitening;
 use crate::left_out::LeftOutPredictions;
 use crate::left_out::level::Conditions;
 use crate::rows::kept::Kept;
-use crate::rows::noise_weights::direct_weights;
+use crate::rows::noise_weights::{direct_weights, require_noise_weights};
 use crate::rows::scaling::Scaling;
 use crate::{GpError, Rows};
 
@@ -39,7 +39,7 @@ impl DirectData {
     /// [`GpError::Lengths`], [`GpError::OneState`], [`GpError::NoMotion`], [`GpError::Overflow`], or [`GpError::Value`]
     /// for a weight that is not positive.
     pub fn new(rows: &Rows, noise_weights: Vec<f64>) -> Result<Self, GpError> {
-        rows.check_noise_weights(&noise_weights)?;
+        require_noise_weights(rows, &noise_weights)?;
         Self::of(rows.states(), rows.velocities(), |_| noise_weights, rows.groups())
     }
 

@@ -215,15 +215,6 @@ impl Rows {
         groups.into_values().collect()
     }
 
-    /// Refuses noise weights that are not one positive number for each row.
-    pub(crate) fn check_noise_weights(&self, noise_weights: &[f64]) -> Result<(), GpError> {
-        let (found, expected) = (noise_weights.len(), self.len());
-        if found != expected {
-            return Err(GpError::Lengths { what: "noise weights", found, expected });
-        }
-        require_positive("noise weight", noise_weights)
-    }
-
     /// The component of each velocity along the direction of its equation, (n, M): along M(x)u (S31), or the whole velocity (S1).
     pub(crate) fn parts(&self) -> Cow<'_, DMatrix<f64>> {
         match &self.momenta {
@@ -303,11 +294,4 @@ pub(crate) fn parts_along(velocities: &DMatrix<f64>, directions: &DMatrix<f64>) 
         part.copy_from(&(&unit * unit.dot(&velocity)));
     }
     parts
-}
-/// Refuses the first value that is not positive and finite.
-pub(crate) fn require_positive(what: &'static str, values: &[f64]) -> Result<(), GpError> {
-    match values.iter().position(|&value| !(value > 0.0 && value.is_finite())) {
-        Some(row) => Err(GpError::Value { what, row, value: values[row] }),
-        None => Ok(()),
-    }
 }

@@ -1,5 +1,7 @@
 //! Relative noise variance of each row: D of (S6).
 
+use crate::{GpError, Rows};
+
 /// Minimum weight: no row counts more than a thousand times as much as the median.
 const LEAST: f64 = 1e-3;
 /// Maximum assumed length of the policy, in root mean squares of the observed speeds.
@@ -32,6 +34,23 @@ pub(crate) fn relative(variances: Vec<f64>) -> Vec<f64> {
     let middle = sorted.len() / 2;
     let median = if sorted.len() % 2 == 1 { sorted[middle] } else { 0.5 * (sorted[middle - 1] + sorted[middle]) };
     variances.into_iter().map(|variance| (variance / median).max(LEAST)).collect()
+}
+
+/// Refuses noise weights that are not one positive number for each row.
+pub(crate) fn require_noise_weights(rows: &Rows, noise_weights: &[f64]) -> Result<(), GpError> {
+    let (found, expected) = (noise_weights.len(), rows.len());
+    if found != expected {
+        return Err(GpError::Lengths { what: "noise weights", found, expected });
+    }
+    require_positive("noise weight", noise_weights)
+}
+
+/// Refuses the first value that is not positive and finite.
+pub(crate) fn require_positive(what: &'static str, values: &[f64]) -> Result<(), GpError> {
+    match values.iter().position(|&value| !(value > 0.0 && value.is_finite())) {
+        Some(row) => Err(GpError::Value { what, row, value: values[row] }),
+        None => Ok(()),
+    }
 }
 
 #[cfg(test)]

@@ -11,7 +11,7 @@ use crate::kernel::whitening::Whitening;
 use crate::left_out::LeftOutPredictions;
 use crate::left_out::level::{Conditions, Level, kappas};
 use crate::rows::kept::Kept;
-use crate::rows::require_positive;
+use crate::rows::noise_weights::{require_noise_weights, require_positive};
 use crate::rows::scaling::Scaling;
 use crate::slope::expansion::Expansion;
 use crate::slope::model::SlopeModel;
@@ -52,7 +52,7 @@ impl SlopeData {
     /// [`GpError::Lengths`], [`GpError::OneState`], [`GpError::Overflow`], or [`GpError::Value`] for a row without motion or a
     /// weight that is not positive.
     pub fn new(rows: &Rows, noise_weights: Vec<f64>) -> Result<Self, GpError> {
-        rows.check_noise_weights(&noise_weights)?;
+        require_noise_weights(rows, &noise_weights)?;
         let parts = rows.parts();
         let speeds: Vec<f64> = parts.column_iter().map(|part| part.norm()).collect();
         require_positive("speed", &speeds)?;

@@ -19,6 +19,8 @@ const AUDIBLE: f64 = 0.01;
 const LOUD: f64 = 0.1;
 /// Minimum share of samples at the limit.
 const SHARE: f64 = 0.05;
+/// The same of spans: those that overlap at the peak of one movement have nearly the same speed.
+const SHARE_OF_SPANS: f64 = 0.1;
 /// Maximum share of faster samples, which noise may cause.
 const FASTER: f64 = 0.01;
 /// Minimum ratio to the number of samples in the next slower interval; peaks of equal movements are below 3.
@@ -30,13 +32,14 @@ const STEADY: f64 = 0.9;
 /// steps may show it.
 pub(super) fn speed_limit(demonstrations: &Demonstrations, state: &[StateChannel], noise: &Noise) -> Option<Finding> {
     let deviation = velocity_variance(demonstrations, noise).sqrt();
-    let of_samples = Speeds { velocities: all_velocities(demonstrations), deviation, equal: EQUAL };
+    let of_samples = Speeds { velocities: all_velocities(demonstrations), deviation, equal: EQUAL, share: SHARE };
     of_samples.limit(state).or_else(|| {
         let of_steps = steps_variance(demonstrations, noise).sqrt();
         let of_spans = |steps: usize| Speeds {
             velocities: over_spans(demonstrations, steps),
             deviation: of_steps / steps as f64,
             equal: EQUAL * steps as f64,
+            share: SHARE_OF_SPANS,
         };
         let spans = if deviation > AUDIBLE * of_samples.usual() { &SPANS[..] } else { &[] };
         spans.iter().find_map(|&steps| of_spans(steps).limit(state))
@@ -63,6 +66,8 @@ struct Speeds {
     deviation: f64,
     /// Relative tolerance for equal speeds without noise.
     equal: f64,
+    /// Minimum share of them at a limit.
+    share: f64,
 }
 
 impl Speeds {
@@ -94,7 +99,7 @@ impl Speeds {
         let samples = speeds.len() as f64;
         let below = |speed: f64| speeds.partition_point(|&other| other < speed);
         let within = |low: f64, high: f64| (below(high) - below(low)) as f64;
-        let first = speeds.len().saturating_sub(1 + (samples * (FASTER + SHARE)) as usize);
+        let first = speeds.len().saturating_sub(1 + (samples * (FASTER + self.share)) as usize);
         let crowd = |&speed: &f64| {
             let width = (self.equal * speed).max(DEVIATIONS * self.deviation);
             (within(speed - width, speed + width), speed, width)
@@ -104,7 +109,7 @@ impl Speeds {
         let faster = (speeds.len() - below(speed + width)) as f64;
         let is_limit = self.deviation <= LOUD * speed
             && speed > 0.0
-            && count >= SHARE * samples
+            && count >= self.share * samples
             && faster <= FASTER * samples
             && count >= CROWDED * slower;
         let median = below(speed - width) + (count / 2.0) as usize;
