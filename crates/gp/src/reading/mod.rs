@@ -33,7 +33,8 @@ pub enum Hypothesis {
 const SAME: f64 = 0.01;
 /// Difference up to which the policies count as equal if all directions were observed.
 const CLOSE: f64 = 0.1;
-/// Coverage from which all directions count as observed if the policies differ: across a constraint common to all movements, noise alone produces up to this share.
+/// Coverage from which all directions count as observed if the policies differ: across a constraint common to all movements, noise alone
+/// produces up to this share.
 const WELL_SEEN: f64 = 0.25;
 /// Minimum number of demonstrations for the reading constrained.
 const DEMONSTRATIONS: usize = 5;
