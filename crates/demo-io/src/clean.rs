@@ -7,7 +7,7 @@ use crate::names::selection::flags;
 use crate::raw::{RawEpisode, RawRecordings, positive, remark, unused};
 use crate::rows::roles;
 use crate::{Fault, Nan, ReadError, ReadOptions};
-use motion::{Channel, Finding, is_called_context, unwrap_angle};
+use motion::{Channel, Finding, is_called_context, is_in_degrees, unwrap_angle};
 
 /// LeRobot's name for the positions of objects.
 pub(crate) const ENVIRONMENT: &str = "observation.environment_state";
@@ -256,11 +256,11 @@ fn unwrap_angles(drafts: &mut RawRecordings, options: &ReadOptions) -> Result<()
     Ok(())
 }
 
-/// A whole turn in the units of a channel: radians, unless its values cover more than two turns.
+/// A whole turn in a channel's unit. Without a unit it is radians, unless its values cover more than two turns.
 fn whole_turn(drafts: &RawRecordings, channel: usize) -> f64 {
     let turn = std::f64::consts::TAU;
-    if drafts.channels[channel].unit.as_deref() == Some("rad") {
-        return turn;
+    if let Some(in_degrees) = is_in_degrees(drafts.channels[channel].unit.as_deref()) {
+        return if in_degrees { 360.0 } else { turn };
     }
     let n = drafts.channels.len();
     let values = drafts.episodes.iter().flat_map(|draft| draft.positions.iter().skip(channel).step_by(n));

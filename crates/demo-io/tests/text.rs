@@ -210,10 +210,13 @@ fn angles_become_radians_and_continuous() {
     let row = found.episodes[0].positions.row(0);
     assert!(row.iter().zip(row.iter().skip(1)).all(|(here, next)| (next - here - 3f64.to_radians()).abs() < 1e-12));
     assert_eq!(found.state[0].unit.as_deref(), Some("rad"));
-    // Without a unit, in degrees.
-    let found = parsed("a.csv", &text, &ReadOptions { unwrap: vec!["q1".to_owned()], ..plain() }).unwrap();
-    let row = found.episodes[0].positions.row(0);
+    // In degrees without a unit. In degrees by the unit, steps of 4° are no jumps even if all values could be radians.
+    let unwrapped =
+        |text: &str| parsed("a.csv", text, &ReadOptions { unwrap: vec!["*".to_owned()], ..plain() }).unwrap();
+    let row = unwrapped(&text).episodes[0].positions.row(0).into_owned();
     assert!(row.iter().zip(row.iter().skip(1)).all(|(here, next)| (next - here - 3.0).abs() < 1e-9), "{row}");
+    let small = unwrapped("t,q [deg]\n0,-4\n0.1,0\n0.2,4\n0.3,0\n");
+    assert_eq!(small.episodes[0].positions.as_slice(), [-4.0, 0.0, 4.0, 0.0]);
 }
 
 #[test]

@@ -81,7 +81,7 @@ mod scaled;
 mod times;
 mod trajectory;
 
-pub use angles::unwrap_angle;
+pub use angles::{is_in_degrees, unwrap_angle};
 pub use demonstrations::Demonstrations;
 pub use error::{MotionError, Series};
 pub use finding::{Decision, Finding, LeftOut, Verdict};

@@ -76,6 +76,9 @@ impl Refusal {
             _ => "more recordings, or Demonstrations.check() for what is wrong with these",
         };
         let refusal = Refusal::of_text(&error.to_string(), place, otherwise);
+        if let FitError::Motion(source) = error {
+            return refusal.with_motion(source);
+        }
         let (trajectory, sample, column) = match error {
             FitError::Align(
                 AlignError::NoVelocities { trajectory }
@@ -157,7 +160,7 @@ pub(crate) fn of_file(error: io::Error, path: &Path) -> PyErr {
         io::ErrorKind::PermissionDenied => Some(EACCES),
         _ => None,
     });
-    let Some(code) = code else { return error.into() };
+    let Some(code) = code else { return PyOSError::new_err(format!("{}: {error}", path.display())) };
     let text = io::Error::from_raw_os_error(code).to_string();
     let reason = text.split(" (os error").next().unwrap_or(&text).to_owned();
     PyOSError::new_err((code, reason, path.as_os_str().to_owned()))

@@ -83,7 +83,7 @@ pub(crate) fn follow(
         Constraint::Rows(rows) => ConstraintSet::normal(matrix(&rows).transpose(), channels.len())
             .map_err(|reason| Refusal::new(reason, "constraint", "an array (k, n), one row a direction"))?,
         Constraint::File(path) => ConstraintSet::load(&path, &channels).map_err(|error| match error {
-            ConstraintFileError::File { source, .. } => of_file(source, &path),
+            ConstraintFileError::File { file, source } => of_file(source, file.as_ref()),
             error => Refusal::constraints(&error, &path.display().to_string()).into(),
         })?,
         Constraint::Function(Some(function)) => of_function(function, Arc::clone(&raised)),

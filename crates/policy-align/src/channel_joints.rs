@@ -1,4 +1,5 @@
 use kinematics::{Joint, JointKind, KinematicsError, RobotModel};
+use motion::is_in_degrees;
 use nalgebra::{DMatrix, DMatrixView, DVector, DVectorView};
 use prepare::StateChannel;
 
@@ -118,7 +119,7 @@ pub(crate) fn unit(unit: Option<&str>, joint: Option<JointKind>) -> f64 {
         (Some("mm"), None | Some(JointKind::Prismatic)) => 1e-3,
         (Some("cm"), None | Some(JointKind::Prismatic)) => 1e-2,
         (_, Some(JointKind::Prismatic)) => 1.0,
-        (Some("deg" | "degree" | "degrees" | "°"), _) => 1f64.to_radians(),
+        (unit, _) if is_in_degrees(unit) == Some(true) => 1f64.to_radians(),
         _ => 1.0,
     }
 }

@@ -1,4 +1,4 @@
-use motion::Verdict;
+use motion::{Verdict, is_in_degrees};
 
 use crate::StateChannel;
 use crate::notes::Notes;
@@ -19,10 +19,8 @@ pub(crate) fn remark(state: &[StateChannel], notes: &mut Notes) {
 /// Decides by the unit, else by the name, else by a joint angle beyond the usual range in radians.
 fn in_degrees(channel: &StateChannel) -> bool {
     let name = channel.name.to_lowercase();
-    match channel.unit.as_deref().map(str::to_lowercase).as_deref() {
-        Some("deg" | "degree" | "degrees" | "°") => return true,
-        Some("") | None => {}
-        Some(_) => return false,
+    if let Some(known) = is_in_degrees(channel.unit.as_deref()) {
+        return known;
     }
     let numbered = |stem: &str| {
         name.strip_prefix(stem)

@@ -44,7 +44,7 @@
 //! - **Noise of more than a few per cent in positions alone** cannot be removed without losing the velocity. Record
 //!   velocities or commands.
 //! - **A push, a speed limit, delayed velocities or quaternions** hide a part of the policy. They are detected and reported, not repaired,
-//!   except for the signs of quaternions.
+//!   except for late velocities and the signs of quaternions.
 //! - **Mixed units** (metres and radians): [`PrepareOptions::scale`] sets a factor; learners may find
 //!   one ([`Prepared::rescaled`]).
 

@@ -778,6 +778,18 @@ proptest! {
         }
     }
 
+    /// Channels near a plane at distance 1 from 0, such as a yaw and a height of 1 m, are no quaternion.
+    #[test]
+    fn channels_near_one_are_no_quaternion(range in 0.05..0.5f64, lift in 0.0..0.01f64) {
+        let recordings = moving(&["x", "y", "yaw", "height"], |k, t| {
+            let at = |phase: f64| range * (1.7 * k as f64 + phase).sin() * (-t).exp();
+            let x = DVector::from_vec(vec![at(0.0), at(1.0), at(2.0), 1.0 + lift * (k as f64 + t).cos()]);
+            let u = DVector::from_vec(vec![-at(0.0), -at(1.0), -at(2.0), -lift * (k as f64 + t).sin()]);
+            (x, u)
+        });
+        prop_assert!(!says(&self::prepared(&recordings), "unit quaternion"));
+    }
+
     /// The number of places at which movements end, whatever the number of movements.
     #[test]
     fn ends_are_counted(places in 1..6usize, near in 0.0..0.01f64) {

@@ -3,9 +3,9 @@
 /// Patterns of quantities that a robot measures besides its state; they are state only if the user says so.
 const MEASURED: [&str; 6] = ["*effort*", "*torque*", "*force*", "*wrench*", "*current*", "*temperature*"];
 
-/// Whether a name is that of a measured quantity that is not state, or matches one of `others`.
+/// Whether a name, without the groups before it, is that of a measured quantity that is not state, or matches one of `others`.
 pub(crate) fn is_not_state(name: &str, others: &[&str]) -> bool {
-    let name = name.to_ascii_lowercase();
+    let name = name.rsplit('/').next().unwrap_or(name).to_ascii_lowercase();
     MEASURED.iter().chain(others).any(|pattern| glob(pattern, &name))
 }
 

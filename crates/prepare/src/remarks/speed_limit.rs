@@ -1,7 +1,7 @@
 //! Detects speeds that are cut off at a limit.
 
-use motion::{Demonstrations, Finding, Trajectory, Verdict};
-use nalgebra::{DMatrix, DVector, DVectorView};
+use motion::{Demonstrations, Finding, Verdict};
+use nalgebra::{DMatrix, DVectorView};
 
 use crate::StateChannel;
 use crate::numbers::{percent, short};
@@ -28,12 +28,15 @@ const CROWDED: f64 = 3.0;
 /// An axis whose mean velocity is this share of the plateau is pressed, not limited.
 const STEADY: f64 = 0.9;
 
-/// Reports the maximum speed of the robot, or of some of its axes. If noise of the positions hides it from single steps, spans of several
-/// steps may show it.
+/// Reports the maximum speed of the robot, or of some of its axes. If noise of the velocities hides it, those over several steps of
+/// the positions may show it.
 pub(super) fn speed_limit(demonstrations: &Demonstrations, state: &[StateChannel], noise: &Noise) -> Option<Finding> {
     let deviation = velocity_variance(demonstrations, noise).sqrt();
     let of_samples = Speeds { velocities: all_velocities(demonstrations), deviation, equal: EQUAL, share: SHARE };
-    of_samples.limit(state).or_else(|| {
+    let spans = if deviation > AUDIBLE * of_samples.usual() { &SPANS[..] } else { &[] };
+    let found = of_samples.limit(state);
+    drop(of_samples);
+    found.or_else(|| {
         let of_steps = steps_variance(demonstrations, noise).sqrt();
         let of_spans = |steps: usize| Speeds {
             velocities: over_spans(demonstrations, steps),
@@ -41,21 +44,22 @@ pub(super) fn speed_limit(demonstrations: &Demonstrations, state: &[StateChannel
             equal: EQUAL * steps as f64,
             share: SHARE_OF_SPANS,
         };
-        let spans = if deviation > AUDIBLE * of_samples.usual() { &SPANS[..] } else { &[] };
         spans.iter().find_map(|&steps| of_spans(steps).limit(state))
     })
 }
 
 /// Velocities over spans of several steps, (n, N).
 fn over_spans(demonstrations: &Demonstrations, steps: usize) -> DMatrix<f64> {
-    let movements = demonstrations.trajectories().iter();
-    let of = |movement: &Trajectory| -> Vec<DVector<f64>> {
-        let velocity =
-            |end: usize| (movement.state(end) - movement.state(end - steps)) / movement.seconds(end - steps, end);
-        (steps..movement.n_samples()).map(velocity).collect()
-    };
-    let velocities: Vec<DVector<f64>> = movements.flat_map(of).collect();
-    if velocities.is_empty() { DMatrix::zeros(demonstrations.dim(), 0) } else { DMatrix::from_columns(&velocities) }
+    let dim = demonstrations.dim();
+    let mut all = Vec::with_capacity(demonstrations.n_samples() * dim);
+    for movement in demonstrations.trajectories() {
+        for end in steps..movement.n_samples() {
+            let (from, to, seconds) =
+                (movement.state(end - steps), movement.state(end), movement.seconds(end - steps, end));
+            all.extend(to.iter().zip(from.iter()).map(|(to, from)| (to - from) / seconds));
+        }
+    }
+    DMatrix::from_vec(dim, all.len() / dim, all)
 }
 
 /// Velocities whose sizes are compared.

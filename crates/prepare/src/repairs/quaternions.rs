@@ -1,6 +1,6 @@
 //! Orientations as unit quaternions; q and −q are the same orientation.
 
-use motion::{Channel, Episode, Verdict};
+use motion::{Channel, Episode, Verdict, standard_deviation};
 use nalgebra::{DVectorView, Vector4};
 
 use crate::notes::Notes;
@@ -11,8 +11,8 @@ use crate::options::Repair;
 const UNIT: f64 = 1e-3;
 /// Noisy quaternions: their norms deviate from 1 by at most this, as a root mean square …
 const NOISY: f64 = 0.02;
-/// … and by this share of the spread of the four channels, so that they vary on a sphere.
-const SPHERE: f64 = 0.1;
+/// … and by this share of the spread along their mean, which is that of a sphere; the distance of a plane from 0 does not vary.
+const SPHERE: f64 = 0.5;
 /// A step longer than this is a change of sign; opposite quaternions are 2 apart.
 const FLIP: f64 = 1.0;
 
@@ -62,11 +62,14 @@ fn is_noisy_quaternion(all: impl Iterator<Item = Vector4<f64>> + Clone) -> bool 
     let count = all.clone().count() as f64;
     // q and −q are the same: signs must not add to the spread.
     let Some(reference) = all.clone().next() else { return false };
+    if all.clone().any(|q| (q.norm() - 1.0).abs() > 5.0 * NOISY) {
+        return false;
+    }
     let signed = all.map(|q| if q.dot(&reference) < 0.0 { -q } else { q });
-    let mean = signed.clone().sum::<Vector4<f64>>() / count;
-    let spread = (signed.clone().map(|q| (q - mean).norm_squared()).sum::<f64>() / count).sqrt();
+    let mean = signed.clone().sum::<Vector4<f64>>().normalize();
+    let along = standard_deviation(signed.clone().map(|q| q.dot(&mean)));
     let off = (signed.map(|q| (q.norm() - 1.0).powi(2)).sum::<f64>() / count).sqrt();
-    off <= NOISY.min(SPHERE * spread)
+    off <= NOISY.min(SPHERE * along)
 }
 
 /// Makes signs consistent; returns the number of sign changes, within movements and between them.

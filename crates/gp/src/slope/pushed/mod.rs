@@ -67,12 +67,12 @@ fn in_task_space(gp: &SlopeGp, rows: &Rows, (kept, own): (&Kept, &Kept), outcome
         let same = rows.labels().is_some() || sought.as_ref().is_some_and(Stretches::are_whole);
         let whole = if same { None } else { Stretches::of(rows, &view, Switches::None) };
         [sought, whole].into_iter().flatten().flat_map(move |found| {
-            let without = found.without_push(rows, &view);
+            let without = || found.without_push(rows, &view);
             match found.push_is_significant() {
                 true if found.push() > SMALL * speed => vec![found],
                 // Noise that samples share, as after smoothing, looks like a small push.
-                true => vec![without, found],
-                false => vec![without],
+                true => vec![without(), found],
+                false => vec![without()],
             }
         })
     });
