@@ -5,10 +5,11 @@
 use crate::systems;
 use crate::systems::{ANGLES, HIMMELBLAU, Switched, System, WELLS};
 use gp::{Acting, AutoFit, ConstraintEstimates, FrontEnd, GpError, Rows, StretchEstimate, TaskSpace};
-use motion::{LearntPolicy, Policy, SampleIndex};
+use motion::{Demonstrations, LearntPolicy, Policy, SampleIndex, Trajectory};
 use nalgebra::{DMatrix, DVector, DVectorView, DVectorViewMut};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use smoothing::Smoother;
 
 /// Number of true stretches, and number of those found.
 #[derive(Debug, Default)]
@@ -137,6 +138,28 @@ fn constraints_of_a_known_policy_are_found() {
             assert_eq!((0..stretch.bound.len()).any(|row| stretch.pushes(row)), push > 0.0);
         }
     }
+}
+
+/// From noisy positions alone, normals are about as far from the true ones as expected, and constraints do not look as if they pushed.
+#[test]
+fn angles_are_as_expected_under_noise_of_positions() {
+    let mut found = Found::default();
+    for seed in 1..=2 {
+        let system = ANGLES.without_switches();
+        let (movements, truth) = system.recorded((25, 80), (0.0, 0.0), seed);
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        let mut noisy = |of: &Trajectory| of.states().map(|x| x + 0.002 * rng.random_range(-1.7..1.7));
+        let states: Vec<DMatrix<f64>> = movements.trajectories().iter().map(&mut noisy).collect();
+        let movements = Demonstrations::from_states(states, movements.time_step()).unwrap();
+        let rows = FrontEnd::Smoothed(Smoother::default()).rows(&movements).unwrap();
+        let fit = systems::learnt(&rows, seed);
+        assert_eq!(fit.slope().report().push, None);
+        let estimates = ConstraintEstimates::of(&rows, fit.slope(), &[TaskSpace::recorded()]).unwrap();
+        count(&estimates, &truth, 80, &mut found);
+    }
+    let ratios = found.angles.iter().zip(&found.expected).map(|(angle, expected)| (angle / expected).min(10.0));
+    let mean_square = ratios.map(|ratio| ratio * ratio).sum::<f64>() / found.angles.len() as f64;
+    assert!(found.covered >= 40 && (0.1..2.5).contains(&mean_square), "{}: {mean_square}", found.covered);
 }
 
 /// Slopes of smoothed positions have errors that hardly change from sample to sample. These are not mistaken for moving
