@@ -168,6 +168,22 @@ def test_files_that_do_not_exist_are_reported(tmp_path) -> None:
         load(tmp_path / "half.json")
 
 
+def test_missing_files_are_named_as_given(aligned: PolicyAlign, tmp_path) -> None:
+    nowhere = str(tmp_path / "none" / "file")
+    for use in (
+        lambda: aligned.rollout([0.5, 0.5], constraint=nowhere),
+        lambda: aligned.rollout([0.5, 0.5], limits=nowhere),
+        lambda: aligned.save(nowhere),
+        lambda: load(nowhere),
+    ):
+        with pytest.raises(FileNotFoundError) as error:
+            use()
+        assert error.value.filename == nowhere
+    with pytest.raises(PolicyAlignError) as error:
+        Demonstrations.read(nowhere)
+    assert nowhere in str(error.value)
+
+
 def test_doubts_are_warned_of_once_and_stay() -> None:
     positions, velocities = on_rails()
     with pytest.warns(PolicyAlignWarning) as warned:
