@@ -15,7 +15,7 @@ use benches::{Wells, cpu_seconds, peak_megabytes, write_noisy};
 use motion::Policy as _;
 use nalgebra::DMatrix;
 use policy_align::demo_io::{self, ReadOptions};
-use policy_align::{FitOptions, Model, PrepareOptions, Progress, fit, prepare};
+use policy_align::{FitOptions, Model, PrepareOptions, Progress, Subject, fit, prepare};
 
 const SAMPLES: usize = 500;
 const NOISE: f64 = 0.05;
@@ -42,7 +42,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         let model = model?;
         let exponent = before.map(|(fewer, less)| (cpu / less).ln() / (count as f64 / fewer as f64).ln());
         let exponent = exponent.map_or(String::new(), |exponent| format!("{exponent:.2}"));
-        let rows = model.decisions.iter().find(|decision| decision.what == "rows").map_or("all", |rows| &rows.value);
+        let rows =
+            model.decisions.iter().find(|decision| decision.what == Subject::Rows).map_or("all", |rows| &rows.value);
         let (error, expected) = (error(&model, &wells), model.trust.numbers.expected_error);
         let peak = peak_megabytes();
         println!("{count:9} {cpu:8.2} {wall:8.2} {exponent:>6} {peak:8.0} {rows:>7} {error:9.2e} {expected:9.2e}");

@@ -1,3 +1,5 @@
+use std::fmt;
+
 use serde::{Deserialize, Serialize};
 
 /// Whether a policy may be used; determined by the worst of its findings.
@@ -28,14 +30,68 @@ pub struct Finding {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Decision {
-    /// The subject, for instance "integration".
-    pub what: String,
+    /// The subject.
+    pub what: Subject,
     /// The choice, for instance "velocity".
     pub value: String,
     /// The reason, for instance "recorded; they agree with the steps".
     pub why: String,
     /// The flag, for instance "--integration".
     pub flag: String,
+}
+
+/// The subject of a decision. In files and texts it is a word: "time step".
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Subject {
+    /// Time between samples.
+    #[serde(rename = "time step")]
+    TimeStep,
+    /// Unit of a channel.
+    Scale,
+    /// Channels that are constant during a movement.
+    Context,
+    /// Signs of quaternions.
+    Quaternions,
+    /// Whole turns of an angle.
+    Angles,
+    /// Movements that were split where they jump.
+    Jumps,
+    /// Labels of constraints that change during a movement.
+    Switches,
+    /// Source of the velocities.
+    Velocities,
+    /// Velocities that lag behind the positions.
+    #[serde(rename = "shift of velocities")]
+    ShiftOfVelocities,
+    /// Smoothing of positions and velocities.
+    Smoothing,
+    /// Consecutive samples averaged to one.
+    Averaging,
+    /// Samples that are in memory together.
+    #[serde(rename = "at once")]
+    AtOnce,
+    /// Equations of a Gaussian process.
+    Rows,
+    /// What is learnt: an aligned policy, or which Gaussian process.
+    Learner,
+    /// Lengths in the space of a robot's joints.
+    Metric,
+    /// Coordinates in which constraints are constant.
+    #[serde(rename = "task space")]
+    TaskSpace,
+    /// The rule that integrates a policy.
+    Integration,
+    /// How near two movements must pass to be aligned.
+    Bandwidth,
+    /// Initial size of a receptive field.
+    InitD,
+}
+
+impl fmt::Display for Subject {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.serialize(f)
+    }
 }
 
 /// An episode that was not used.

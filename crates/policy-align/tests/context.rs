@@ -15,8 +15,8 @@ use goals::{Attraction, Goals};
 use motion::{Channel, Episode, Policy as _, Recordings, Source, Times, Trajectory, Verdict};
 use nalgebra::{DMatrix, DVector, dvector};
 use policy_align::{
-    ContextError, ContextUse, FitOptions, Model, PrepareError, PrepareOptions, Progress, RollOut, RollOutError, fit,
-    prepare, to_onnx,
+    ContextError, ContextUse, FitOptions, Model, PrepareError, PrepareOptions, Progress, RollOut, RollOutError,
+    Subject, fit, prepare, to_onnx,
 };
 use rand::{RngExt as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
@@ -52,7 +52,7 @@ fn goals_are_found_and_new_ones_reached() {
     let model = model();
     assert_eq!(model.context_names(), ["goal_x", "goal_y"]);
     assert_eq!(model.channels(), ["x", "y"]);
-    let decision = model.decisions.iter().find(|decision| decision.what == "context").unwrap();
+    let decision = model.decisions.iter().find(|decision| decision.what == Subject::Context).unwrap();
     assert_eq!((decision.value.as_str(), decision.flag.as_str()), ("goal_x, goal_y", "--context"));
     for goal in [dvector![0.5, -0.5], dvector![-0.7, 0.3]] {
         let there = model.in_context(&goal).unwrap();

@@ -13,7 +13,7 @@ use gp::Hypothesis;
 use nalgebra::DMatrix;
 use policy_align::{
     EvaluateError, FitError, FitOptions, LearnerChoice, Learnt, Model, PrepareOptions, Prepared, Progress, Smoothing,
-    Step, Truth, Verdict, evaluate, leave_constraints_out, prepare,
+    Step, Subject, Truth, Verdict, evaluate, leave_constraints_out, prepare,
 };
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -90,7 +90,7 @@ fn units_do_not_matter() {
 fn units_are_learnt() {
     let mixed = few().in_units(&[1.0, 1000.0]);
     let model = fit(&prepared(&mixed), &small(LearnerChoice::Auto)).unwrap();
-    let scale = model.decisions.iter().find(|decision| decision.what == "scale").unwrap();
+    let scale = model.decisions.iter().find(|decision| decision.what == Subject::Scale).unwrap();
     assert_eq!((scale.value.as_str(), scale.flag.as_str()), ("y times 0.001", "--scale"));
     assert_eq!(model.scales().as_slice(), [1.0, 0.001]);
     assert!(mixed.error(model.learnt.policy(), &model.scales()) < 1e-3);
@@ -137,7 +137,7 @@ fn decisions_report_the_options_used() {
     let prepared = prepared(&few());
     let value = |options: &FitOptions, what: &str| {
         let fit = fit(&prepared, options).unwrap();
-        fit.decisions.iter().find(|decision| decision.what == what).unwrap().value.clone()
+        fit.decisions.iter().find(|decision| decision.what.to_string() == what).unwrap().value.clone()
     };
     assert_eq!(value(&small(LearnerChoice::Auto), "learner"), "slope GP");
     let free = FitOptions { reading: Some(Hypothesis::Free), ..small(LearnerChoice::Auto) };

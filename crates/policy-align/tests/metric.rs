@@ -6,7 +6,7 @@ use std::sync::atomic::AtomicBool;
 
 use motion::{Channel, Episode, Recordings, Source, Times};
 use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
-use policy_align::{FitError, FitOptions, Model, PrepareOptions, Progress, Verdict, fit, prepare};
+use policy_align::{FitError, FitOptions, Model, PrepareOptions, Progress, Subject, Verdict, fit, prepare};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -90,7 +90,11 @@ fn the_mass_matrix_is_taken_where_it_explains_the_movements() {
     assert!(error(&with) < 1e-3 && error(&without) > 0.05, "{} {}", error(&with), error(&without));
     let verdicts = (with.trust.verdict, without.trust.verdict);
     assert!(verdicts.0 < Verdict::DoNotUse && verdicts.1 == Verdict::DoNotUse, "{verdicts:?}");
-    assert!(with.decisions.iter().any(|decision| decision.what == "metric" && decision.value == "mass matrix of arm"));
+    assert!(
+        with.decisions
+            .iter()
+            .any(|decision| decision.what == Subject::Metric && decision.value == "mass matrix of arm")
+    );
     let plain = recordings(|_| Matrix2::identity());
     let [with, without] = [Some(urdf("1")), None].map(|robot| learnt(&plain, robot).unwrap().to_json().unwrap());
     assert_eq!(with, without);

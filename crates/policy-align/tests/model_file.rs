@@ -64,7 +64,7 @@ fn faults_are_reported_in_one_line_with_their_place() {
         assert!(!said.contains('\n') && said.len() < 400, "{said}");
         said
     };
-    let cases: [(String, &str); 12] = [
+    let cases: [(String, &str); 13] = [
         (said(Model::from_json(b"\xff\xfe")), "not a policy-align model: the file is no JSON object"),
         (said(Model::from_json(b"{")), "damaged or cut off: not JSON (EOF"),
         (said(Model::from_json(br#"{"format":"urdf"}"#)), r#"not a policy-align model: `format` is "urdf""#),
@@ -77,6 +77,7 @@ fn faults_are_reported_in_one_line_with_their_place() {
         (said(with(&text, "", |v| remove(v, "checksum"))), "checksum: missing"),
         (said(with(&text, "/state/1", |v| remove(v, "scale"))), "state[1]: missing field `scale`"),
         (said(with(&text, "/state/1/scale", |v| *v = json!("a\nb"))), "state[1].scale: invalid type"),
+        (said(with(&text, "/decisions/0/what", |v| *v = json!("mood"))), "decisions[0].what: unknown variant `mood`"),
         (said(with(&text, "/learnt/direct/direct_gp/states/3", |v| *v = Value::Null)), "learnt.direct"),
         (said(with(&text, "/state/1", |v| v["a\nb"] = json!(1))), "state[1].a b: unknown field"),
         (said(with(&text, "/state/0/name", |v| *v = json!("y"))), "the checksum does not match"),

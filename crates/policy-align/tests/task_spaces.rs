@@ -7,7 +7,7 @@ use std::sync::atomic::AtomicBool;
 use demo_gen::tasks::{Contact, Wiping};
 use motion::{Channel, Episode, Recordings, Source, Times};
 use nalgebra::{DMatrix, DVector};
-use policy_align::{FitOptions, Model, PrepareOptions, Progress, fit, prepare};
+use policy_align::{FitOptions, Model, PrepareOptions, Progress, Subject, fit, prepare};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -90,7 +90,7 @@ fn constraints_of_a_tool_are_learnt_from() {
         apart / all
     };
     let space = |model: &Model| {
-        let found = model.decisions.iter().find(|decision| decision.what == "task space");
+        let found = model.decisions.iter().find(|decision| decision.what == Subject::TaskSpace);
         found.map(|decision| decision.value.clone())
     };
     let (with, without) = (learnt(Some(ARM.to_owned())), learnt(None));

@@ -156,6 +156,7 @@ pub fn prepare<'a>(
         demonstrations,
         state,
         context,
+        given_scales: options.scale.iter().map(|(name, _)| name.clone()).collect(),
         noise,
         velocities,
         smoothing: options.smoothing,

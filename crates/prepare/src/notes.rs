@@ -1,4 +1,4 @@
-use motion::{Decision, Finding, LeftOut, Verdict};
+use motion::{Decision, Finding, LeftOut, Subject, Verdict};
 
 /// Decisions and findings collected while preparing.
 #[derive(Debug, Default)]
@@ -9,9 +9,8 @@ pub(crate) struct Notes {
 }
 
 impl Notes {
-    pub(crate) fn decided(&mut self, what: &str, value: impl Into<String>, why: impl Into<String>, flag: &str) {
-        let (what, flag) = (what.to_owned(), flag.to_owned());
-        self.decisions.push(Decision { what, value: value.into(), why: why.into(), flag });
+    pub(crate) fn decided(&mut self, what: Subject, value: impl Into<String>, why: impl Into<String>, flag: &str) {
+        self.decisions.push(Decision { what, value: value.into(), why: why.into(), flag: flag.to_owned() });
     }
 
     pub(crate) fn found(&mut self, verdict: Verdict, what: impl Into<String>, next: impl Into<String>) {

@@ -18,6 +18,8 @@ pub struct Prepared {
     pub state: Vec<StateChannel>,
     /// The p dimensions of the context; empty if movements depend on the state alone.
     pub context: Vec<StateChannel>,
+    /// Names of the channels whose scale the user gave.
+    pub given_scales: Vec<String>,
     /// Median time step in seconds.
     pub time_step: f64,
     /// Noise of positions and velocities.

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
-use motion::{Channel, Episode, Finding, Labels, Recordings, Source, Verdict};
+use motion::{Channel, Episode, Finding, Labels, Recordings, Source, Subject, Verdict};
 use nalgebra::{DMatrix, DVector};
 use prepare::{
     PrepareError, PrepareOptions, Prepared, Repair, Smoothing, VelocitySource, VelocityUse, prepare, trim_still,
@@ -44,7 +44,7 @@ fn prepared(recordings: &Recordings) -> Prepared {
 
 /// The decision on a subject.
 fn decided<'a>(prepared: &'a Prepared, what: &str) -> &'a str {
-    &prepared.decisions.iter().find(|decision| decision.what == what).unwrap().value
+    &prepared.decisions.iter().find(|decision| decision.what.to_string() == what).unwrap().value
 }
 
 /// The verdict of the finding that contains these words.
@@ -213,7 +213,7 @@ fn stamps() {
         let slow = prepared(&recordings);
         assert_eq!(verdict(&slow, &format!("read as {unit}")), Verdict::Doubtful);
         assert!((slow.time_step - STEP).abs() < 1e-12);
-        assert_eq!(slow.decisions.iter().filter(|decision| decision.what == "time step").count(), 1);
+        assert_eq!(slow.decisions.iter().filter(|decision| decision.what == Subject::TimeStep).count(), 1);
         assert_eq!(slow.findings.len(), 1, "one fault, one finding: {:?}", slow.findings);
         // What the user gave is kept.
         let step = PrepareOptions { time_step: Some(times * STEP), ..PrepareOptions::default() };
@@ -774,7 +774,7 @@ proptest! {
             let keep = PrepareOptions { wraps: Repair::Keep, ..PrepareOptions::default() };
             let kept = prepare(&flipped, &keep).unwrap();
             prop_assert!(says(&kept, "unit quaternion"));
-            prop_assert!(kept.decisions.iter().all(|decision| decision.what != "quaternions"));
+            prop_assert!(kept.decisions.iter().all(|decision| decision.what != Subject::Quaternions));
         }
     }
 
@@ -827,7 +827,7 @@ fn labels_tell_switches() {
     assert!(long.constraints.iter().all(Option::is_none) && long.findings.is_empty(), "{:?}", long.findings);
     let (count, short) = switches(&labelled(2));
     assert_eq!((count, verdict(&short, "labels of constraints change every 2 samples")), (0, Verdict::Good));
-    assert!(short.decisions.iter().all(|decision| decision.what != "switches"));
+    assert!(short.decisions.iter().all(|decision| decision.what != Subject::Switches));
     // Names of whole episodes are no switches.
-    assert!(prepared(&recordings()).decisions.iter().all(|decision| decision.what != "switches"));
+    assert!(prepared(&recordings()).decisions.iter().all(|decision| decision.what != Subject::Switches));
 }

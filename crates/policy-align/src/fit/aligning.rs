@@ -17,7 +17,7 @@ use super::decision::decision;
 use super::options::FitOptions;
 use super::progress::Progress;
 use super::recorded_rows::averaged;
-use crate::{Decision, FitError, Prepared, Smoothing, VelocitySource};
+use crate::{Decision, FitError, Prepared, Smoothing, Subject, VelocitySource};
 
 /// Candidate values of `init_d`: one over the squared width of receptive fields, in units of the states' spread.
 const INIT_D: [f64; 5] = [1.0, 2.5, 6.0, 15.0, 40.0];
@@ -129,7 +129,8 @@ pub(super) fn fit(
     progress: &mut Progress<'_>,
 ) -> Result<AlignedFit, FitError> {
     let (demonstrations, integration, why) = integrable(prepared)?;
-    let mut decisions = vec![decision("integration", format!("{integration:?}").to_lowercase(), why, "--integration")];
+    let mut decisions =
+        vec![decision(Subject::Integration, format!("{integration:?}").to_lowercase(), why, "--integration")];
     progress.begin(2, 4, "choosing bandwidth and receptive fields")?;
     let tried = grid(&demonstrations, integration, (rows, reference), options, progress)?;
     let best = choose(&tried).ok_or(FitError::Cancelled)?;
@@ -141,12 +142,12 @@ pub(super) fn fit(
     );
     let given = |flag: bool| if flag { "given".to_owned() } else { why_best.clone() };
     decisions.push(decision(
-        "bandwidth",
+        Subject::Bandwidth,
         format!("{:?} (σ² {:.3e})", best.bandwidth, best.sigma_squared).to_lowercase(),
         given(options.bandwidth.is_some()),
         "--bandwidth",
     ));
-    decisions.push(decision("init_d", format!("{}", best.init_d), given(options.init_d.is_some()), "--init-d"));
+    decisions.push(decision(Subject::InitD, format!("{}", best.init_d), given(options.init_d.is_some()), "--init-d"));
     progress.begin(3, 4, "aligning all movements")?;
     let align = PolicyAlign { integration, bandwidth: Bandwidth::Fixed(best.sigma_squared), ..PolicyAlign::default() };
     let aligned = align.align(&demonstrations)?;

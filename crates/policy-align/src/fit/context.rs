@@ -18,8 +18,7 @@ pub(super) fn comparable(prepared: &Prepared, options: &FitOptions) -> Result<Pr
     let gp = SlopeGp { max_rows: options.max_rows, ..SlopeGp::default() };
     let mut factors = gp.context_factors(&rows(prepared)?, &mut ChaCha8Rng::seed_from_u64(options.seed))?;
     for (factor, channel) in factors.iter_mut().zip(&prepared.context) {
-        let given = format!("{} times ", channel.name);
-        if prepared.decisions.iter().any(|of| of.flag == "--scale" && of.value.starts_with(&given)) {
+        if prepared.given_scales.contains(&channel.name) {
             *factor = 1.0;
         }
     }

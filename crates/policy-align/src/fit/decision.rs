@@ -5,11 +5,11 @@ use prepare::numbers::{percent, squared_error};
 
 use super::digest::Digest;
 use super::options::{FitOptions, LearnerChoice};
-use crate::{Decision, LeftOut, Prepared};
+use crate::{Decision, LeftOut, Prepared, Subject};
 
 /// A decision, its reason, and the flag that overrides it.
-pub(super) fn decision(what: &str, value: impl Into<String>, why: impl Into<String>, flag: &str) -> Decision {
-    Decision { what: what.to_owned(), value: value.into(), why: why.into(), flag: flag.to_owned() }
+pub(super) fn decision(what: Subject, value: impl Into<String>, why: impl Into<String>, flag: &str) -> Decision {
+    Decision { what, value: value.into(), why: why.into(), flag: flag.to_owned() }
 }
 
 /// How samples became the rows of a Gaussian process; `None` if each sample is a row.
@@ -34,7 +34,7 @@ pub(super) fn rows_decision(readings: &AutoFit) -> Option<Decision> {
         why.push(format!("{contradicted} states in stretches that other movements contradict count less"));
     }
     let flag = if thinned == 0 && inducing.is_none() { "--max-rows" } else { "--inducing" };
-    (!why.is_empty()).then(|| decision("rows", rows.to_string(), why.join("; "), flag))
+    (!why.is_empty()).then(|| decision(Subject::Rows, rows.to_string(), why.join("; "), flag))
 }
 
 /// The samples that were held in memory together; `None` if all were.
@@ -51,7 +51,7 @@ pub(super) fn digests_decision(prepared: &Prepared, digests: &[Digest], readings
         ),
     };
     let at_hand = format!("{} samples", prepared.demonstrations.n_samples());
-    (!digests.is_empty()).then(|| decision("at once", at_hand, why, "--at-once"))
+    (!digests.is_empty()).then(|| decision(Subject::AtOnce, at_hand, why, "--at-once"))
 }
 
 /// All movements except those kept; PolicyAlign could not align them with the others.
@@ -62,7 +62,7 @@ pub(super) fn discarded(kept: &[usize], episodes: &[String]) -> Vec<LeftOut> {
 }
 
 pub(super) fn learner_decision(options: &FitOptions, readings: &AutoFit) -> Decision {
-    let given = |learner| decision("learner", learner, "given", "--learner");
+    let given = |learner| decision(Subject::Learner, learner, "given", "--learner");
     match options.learner {
         LearnerChoice::PolicyAlign => given("policy-align"),
         LearnerChoice::Slope => given("slope GP"),
@@ -79,7 +79,7 @@ pub(super) fn learner_decision(options: &FitOptions, readings: &AutoFit) -> Deci
                     squared_error(numbers.a_d)
                 ),
             };
-            decision("learner", learner, why, "--reading")
+            decision(Subject::Learner, learner, why, "--reading")
         }
     }
 }

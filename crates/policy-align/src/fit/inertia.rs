@@ -2,7 +2,7 @@
 
 use gp::{AutoFit, Rows};
 use kinematics::{KinematicsError, RobotModel, Workspace};
-use motion::Decision;
+use motion::{Decision, Subject};
 use nalgebra::{DMatrix, DVector};
 use prepare::numbers::squared_error;
 
@@ -47,7 +47,7 @@ pub(super) fn weighed(
     let why = format!(
         "constraints are at right angles in this metric: error relative to the motion {after}, in that of the channels {before}"
     );
-    let decision = decision("metric", format!("mass matrix of {}", robot.name()), why, "--robot");
+    let decision = decision(Subject::Metric, format!("mass matrix of {}", robot.name()), why, "--robot");
     Ok(Some(Weighed { rows, readings, decision }))
 }
 

@@ -2,7 +2,7 @@
 
 use gp::{AutoFit, Rows};
 use kinematics::RobotModel;
-use motion::Decision;
+use motion::{Decision, Subject};
 use prepare::numbers::squared_error;
 
 use super::decision::decision;
@@ -39,6 +39,6 @@ impl LinkNames {
             "constraints are constant there: expected error {}, learnt from all that they leave free",
             squared_error(report.expected_nupe)
         );
-        Some(decision("task space", name.clone(), why, "--robot"))
+        Some(decision(Subject::TaskSpace, name.clone(), why, "--robot"))
     }
 }

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use gp::{AutoFit, Hypothesis, LearntScales, PushTest, Rows, SlopeGp};
-use motion::{Decision, standard_deviation, upper_median};
+use motion::{Decision, Subject, standard_deviation, upper_median};
 use nalgebra::DVector;
 use prepare::numbers::squared_error;
 use rand::SeedableRng;
@@ -41,12 +41,11 @@ pub(super) fn candidates(
     readings: &AutoFit,
     options: &FitOptions,
 ) -> Result<Candidates, FitError> {
-    let chosen = prepared.decisions.iter().any(|decision| decision.flag == "--scale");
     let reading = options.reading.unwrap_or(readings.reading());
     let constrained = !matches!(reading, Hypothesis::Free | Hypothesis::TooFew);
     let report = readings.slope().report();
     // With a robot, the joints' own units are those in which its links keep constraints.
-    if chosen
+    if !prepared.given_scales.is_empty()
         // Free motion shows the policy in any unit.
         || readings.numbers().free.is_some()
         || report.task_space.is_some()
@@ -142,6 +141,8 @@ fn decisions(prepared: &Prepared, factors: &DVector<f64>, (before, after): (f64,
     );
     let changed = prepared.state.iter().zip(factors).filter(|(_, factor)| **factor != 1.0);
     changed
-        .map(|(channel, factor)| decision("scale", format!("{} times {factor}", channel.name), why.as_str(), "--scale"))
+        .map(|(channel, factor)| {
+            decision(Subject::Scale, format!("{} times {factor}", channel.name), why.as_str(), "--scale")
+        })
         .collect()
 }

@@ -1,5 +1,5 @@
 use demo_io::{ReadError, ReadOptions, read_further};
-use motion::{LeftOut, Recordings};
+use motion::{LeftOut, Recordings, Subject};
 use serde::{Deserialize, Serialize};
 
 use crate::fit::{made_beside, rows};
@@ -153,6 +153,6 @@ impl Digester {
 
 /// The source of the velocities, in words.
 fn how(prepared: &Prepared) -> String {
-    let decision = prepared.decisions.iter().find(|decision| decision.what == "velocities");
+    let decision = prepared.decisions.iter().find(|decision| decision.what == Subject::Velocities);
     decision.map_or_else(String::new, |decision| decision.value.clone())
 }

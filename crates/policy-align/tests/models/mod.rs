@@ -9,8 +9,8 @@ use gp::{AutoGp, DirectGp, FrontEnd, Rows, SlopeGp};
 use motion::Demonstrations;
 use nalgebra::{DMatrix, DVector};
 use policy_align::{
-    DataSummary, Decision, FileSummary, Finding, Learnt, LeftOut, MadeBy, Model, StateChannel, Trust, TrustNumbers,
-    Verdict,
+    DataSummary, Decision, FileSummary, Finding, Learnt, LeftOut, MadeBy, Model, StateChannel, Subject, Trust,
+    TrustNumbers, Verdict,
 };
 use rand::{RngExt as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
@@ -121,7 +121,7 @@ pub(crate) fn model(learnt: Learnt, demonstrations: &Demonstrations) -> Model {
             left_out: vec![LeftOut { episode: "17".to_owned(), why: "not connected".to_owned() }],
         },
         decisions: vec![Decision {
-            what: "integration".to_owned(),
+            what: Subject::Integration,
             value: "velocity".to_owned(),
             why: "recorded; they agree with the steps".to_owned(),
             flag: "--integration".to_owned(),

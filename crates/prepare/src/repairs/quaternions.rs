@@ -1,6 +1,6 @@
 //! Orientations as unit quaternions; q and −q are the same orientation.
 
-use motion::{Channel, Episode, Verdict, standard_deviation};
+use motion::{Channel, Episode, Subject, Verdict, standard_deviation};
 use nalgebra::{DVectorView, Vector4};
 
 use crate::notes::Notes;
@@ -37,7 +37,7 @@ fn report_signs(names: &str, flips: usize, notes: &mut Notes) {
     } else {
         let flips = counted(flips, "change");
         let why = format!("{flips} of sign, but q and −q are one orientation");
-        notes.decided("quaternions", format!("{names} with one sign"), why, "--wraps");
+        notes.decided(Subject::Quaternions, format!("{names} with one sign"), why, "--wraps");
         format!(" with {flips} of sign, which were undone")
     };
     notes.found(

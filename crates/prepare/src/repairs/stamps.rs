@@ -1,4 +1,4 @@
-use motion::{Demonstrations, Episode, Times, Verdict, upper_median, whole_step};
+use motion::{Demonstrations, Episode, Subject, Times, Verdict, upper_median, whole_step};
 
 use crate::PrepareError;
 use crate::notes::{Notes, and_more};
@@ -39,7 +39,7 @@ pub(crate) fn decide(
         for episode in episodes.iter_mut() {
             episode.times = Times::Even { step: time_step, len: episode.n_samples() };
         }
-        notes.decided("time step", format!("{time_step} s"), "given", "--dt");
+        notes.decided(Subject::TimeStep, format!("{time_step} s"), "given", "--dt");
         return Ok(());
     }
     let (mut uneven, mut worst, mut gaps, mut first) = (0, 0.0_f64, 0, None);
@@ -90,7 +90,7 @@ fn decided(episodes: &[Episode], (uneven, worst): (usize, f64), notes: &mut Note
             percent(worst)
         ),
     };
-    notes.decided("time step", value, why, "--dt");
+    notes.decided(Subject::TimeStep, value, why, "--dt");
 }
 
 /// Reports a time step that is hardly in seconds.

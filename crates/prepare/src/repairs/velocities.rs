@@ -1,4 +1,4 @@
-use motion::{Channel, Episode, Verdict};
+use motion::{Channel, Episode, Subject, Verdict};
 use nalgebra::DVector;
 
 use crate::notes::Notes;
@@ -52,11 +52,11 @@ pub(crate) fn decide(
                 "record velocities in every episode, or leave out the episodes without",
             );
         }
-        notes.decided("velocities", "from positions", why, "--integration");
+        notes.decided(Subject::Velocities, "from positions", why, "--integration");
         return Agreement::None;
     }
     if options.velocities == VelocityUse::Recorded {
-        notes.decided("velocities", "recorded", "used as requested", "--integration");
+        notes.decided(Subject::Velocities, "recorded", "used as requested", "--integration");
         return Agreement::Own;
     }
     if lag::repair(episodes, noise, notes) {
@@ -68,7 +68,7 @@ pub(crate) fn decide(
         discard(episodes);
         let explained = percent(fit.explained.max(0.0));
         let why = format!("those recorded explain {explained} of the steps");
-        notes.decided("velocities", "from positions", why, "--integration");
+        notes.decided(Subject::Velocities, "from positions", why, "--integration");
         notes.found(
             Verdict::Doubtful,
             format!("recorded velocities do not match the steps (they explain {explained} of them) and were ignored"),
@@ -83,7 +83,7 @@ pub(crate) fn decide(
             Some(_) => ("recorded", "recorded; they are differences of the positions"),
             None => ("recorded", "recorded; they agree with the steps"),
         };
-        notes.decided("velocities", value, why, "--integration");
+        notes.decided(Subject::Velocities, value, why, "--integration");
         return made.unwrap_or(Agreement::Own);
     }
     let stamps_are_given = options.time_step.is_some() || options.time_unit_given;
@@ -198,9 +198,9 @@ fn in_seconds(episodes: &mut [Episode], fit: &Steps, notes: &mut Notes) -> bool 
     }
     let what = format!("stamps are {step:.0} apart and velocities {} times the steps", unit.a_second);
     // Keeps only the valid one of two decisions on the time step.
-    notes.decisions.retain(|decision| decision.what != "time step");
+    notes.decisions.retain(|decision| decision.what != Subject::TimeStep);
     let seconds = format!("{} s", step / unit.a_second);
-    notes.decided("time step", seconds, format!("{what}: stamps are {}", unit.name), "--dt");
+    notes.decided(Subject::TimeStep, seconds, format!("{what}: stamps are {}", unit.name), "--dt");
     let next = format!("--time-unit {}, or --dt", unit.flag);
     notes.found(Verdict::Doubtful, format!("{what}: stamps were read as {}", unit.name), next);
     true
@@ -228,7 +228,12 @@ fn rescale(episodes: &mut [Episode], fit: &Steps, channels: &[Channel], notes: &
         let (name, factor) = (&channels[odd].name, fit.factors[odd]);
         if factor == 0.0 {
             let what = format!("velocities of channel {name} are not 0, although it never moves");
-            notes.decided("velocities", "recorded, 0 where a channel never moves", what.clone(), "--integration");
+            notes.decided(
+                Subject::Velocities,
+                "recorded, 0 where a channel never moves",
+                what.clone(),
+                "--integration",
+            );
             let next = "check that the column of velocities belongs to this channel (--velocity)";
             notes.found(Verdict::Doubtful, format!("{what}; they were set to 0"), next);
             return;
@@ -237,7 +242,7 @@ fn rescale(episodes: &mut [Episode], fit: &Steps, channels: &[Channel], notes: &
         (format!("velocities of channel {name} are {} times its steps, unlike the others", short(times)), times)
     };
     let next = mistake(times, step).map_or("check units and time step (--dt), or whether a filter delays them: --integration displacement takes velocities from the positions", |(_, words)| words);
-    notes.decided("velocities", "recorded, rescaled to agree with the steps", what.clone(), "--integration");
+    notes.decided(Subject::Velocities, "recorded, rescaled to agree with the steps", what.clone(), "--integration");
     notes.found(Verdict::Doubtful, format!("{what}; they were converted to the units of positions and stamps"), next);
 }
 

@@ -1,6 +1,6 @@
 use std::f64::consts::TAU;
 
-use motion::{Channel, Episode, Verdict, unwrap_angle};
+use motion::{Channel, Episode, Subject, Verdict, unwrap_angle};
 use nalgebra::DMatrix;
 
 use crate::notes::{Notes, and_more};
@@ -25,7 +25,7 @@ pub(crate) fn unwrap(episodes: &mut [Episode], channels: &[Channel], notes: &mut
         to_common_end(episodes, channel, turn);
         let name = &described.name;
         notes.decided(
-            "angles",
+            Subject::Angles,
             format!("{name} unwrapped"),
             format!("it jumps by a whole turn in {} of {} episodes", wrapped, episodes.len()),
             "--wraps",

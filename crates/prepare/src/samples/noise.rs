@@ -1,6 +1,6 @@
 use std::borrow::Cow;
 
-use motion::{Demonstrations, Verdict};
+use motion::{Demonstrations, Subject, Verdict};
 use nalgebra::{DMatrix, DVector, DVectorView};
 use serde::{Deserialize, Serialize};
 use smoothing::{PositionNoise, VelocityNoise};
@@ -181,7 +181,7 @@ pub(crate) fn decide(
             ("positions smoothed piecewise", format!("{words}; velocities are no better"))
         }
     };
-    notes.decided("smoothing", value, why, "--smooth");
+    notes.decided(Subject::Smoothing, value, why, "--smooth");
     if recorded == VelocitySource::Positions && noise.is_noisy() {
         notes.found(
             Verdict::Good,

@@ -1,6 +1,6 @@
 //! Smoothing of positions on request.
 
-use motion::{Demonstrations, MotionError, Trajectory};
+use motion::{Demonstrations, MotionError, Subject, Trajectory};
 use smoothing::{SavitzkyGolay, SmoothingError, slopes};
 
 use crate::PrepareError;
@@ -21,7 +21,7 @@ pub(crate) fn as_requested(
     let window: &dyn Fn(&Trajectory) -> usize = match smoothing {
         Smoothing::Auto => return Ok(None),
         Smoothing::Off => {
-            notes.decided("smoothing", "none: positions as recorded", "as requested", "--smooth");
+            notes.decided(Subject::Smoothing, "none: positions as recorded", "as requested", "--smooth");
             return Ok(Some(demonstrations.clone()));
         }
         Smoothing::Samples(window) => &move |_| window,
@@ -44,7 +44,7 @@ pub(crate) fn as_requested(
         (Some(least), Some(most)) if least < most => format!("positions, windows of {least} to {most} samples"),
         (least, _) => format!("positions, window of {} samples", least.unwrap_or_default()),
     };
-    notes.decided("smoothing", value, "as requested; local parabolas", "--smooth");
+    notes.decided(Subject::Smoothing, value, "as requested; local parabolas", "--smooth");
     Ok(Some(smoothed))
 }
 

@@ -1,6 +1,6 @@
 //! Averages many noisy samples to fewer, more exact ones.
 
-use motion::{Demonstrations, MotionError, Trajectory, upper_median};
+use motion::{Demonstrations, MotionError, Subject, Trajectory, upper_median};
 use nalgebra::DMatrix;
 
 use crate::notes::Notes;
@@ -34,7 +34,7 @@ pub(crate) fn decide(demonstrations: &Demonstrations, noise: &Noise, notes: &mut
             percent_of_all(noise.step_share),
             percent_of_all(share)
         );
-        notes.decided("averaging", format!("over {taken} samples"), why, "--smooth");
+        notes.decided(Subject::Averaging, format!("over {taken} samples"), why, "--smooth");
     }
     taken
 }

@@ -83,7 +83,7 @@ pub(crate) fn table(columns: &[Column], rows: &[Vec<Markup>]) -> Markup {
 pub(crate) fn decisions(decisions: &[Decision]) -> Markup {
     let row = |decision: &Decision| {
         let text = |text: &str| html! { (text) };
-        vec![text(&decision.what), text(&decision.value), text(&decision.why), html! { code { (decision.flag) } }]
+        vec![html! { (decision.what) }, text(&decision.value), text(&decision.why), html! { code { (decision.flag) } }]
     };
     html! {
         p { "Each automatic decision, its reason, and the flag that overrides it." }

@@ -3,7 +3,7 @@
 use maud::{Markup, html};
 use motion::LearntPolicy as _;
 use page::{Card, Part};
-use policy_align::{AlignedNumbers, ConstraintStretch, Model, Prepared, TrustNumbers, direction_by_channels};
+use policy_align::{AlignedNumbers, ConstraintStretch, Model, Prepared, Subject, TrustNumbers, direction_by_channels};
 
 use crate::cli::describe::learner;
 use crate::cli::lines::counted;
@@ -54,7 +54,7 @@ pub(crate) fn trust_page(model: &Model, name: &str, checksum: &str, prepared: &P
 
 /// The number of rows made from the samples, if they were thinned or averaged.
 fn rows(model: &Model) -> String {
-    let rows = model.decisions.iter().find(|decision| decision.what == "rows");
+    let rows = model.decisions.iter().find(|decision| decision.what == Subject::Rows);
     rows.map_or(String::new(), |rows| format!(" ({} rows: {})", rows.value, rows.why))
 }
 

@@ -137,7 +137,7 @@ pub(crate) fn about(prepared: &Prepared, files: &str, lines: &mut Lines) {
     }
     lines.add("values", &ranges.join(", "));
     for decision in &prepared.decisions {
-        lines.add(&decision.what, &format!("{} ({})", decision.value, decision.why));
+        lines.add(&decision.what.to_string(), &format!("{} ({})", decision.value, decision.why));
     }
 }
 

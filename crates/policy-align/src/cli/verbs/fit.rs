@@ -5,7 +5,7 @@ use clap::Args;
 use motion::anomalies::duplicates;
 use motion::{Episode, Recordings};
 use policy_align::{
-    Decision, Digester, Evaluation, Finding, Model, PrepareOptions, Prepared, Progress, Unfinished, Verdict,
+    Decision, Digester, Evaluation, Finding, Model, PrepareOptions, Prepared, Progress, Subject, Unfinished, Verdict,
     checksum_of, evaluate, fit_with, prepare,
 };
 use serde_json::json;
@@ -26,8 +26,6 @@ use crate::cli::session::{Output, Session, write_together};
 use crate::cli::trust_files::{MEMBER, trust_files, warn_of_others};
 use crate::cli::verbs::check::{findings, left_out};
 
-/// The flag for decisions that depend on a robot.
-const ROBOT: &str = "--robot";
 /// Default name of the model's file.
 const MODEL: &str = "model.json";
 
@@ -66,6 +64,13 @@ pub(crate) struct Fit {
     prepare: PrepareFlags,
     #[command(flatten)]
     read: ReadFlags,
+}
+
+/// Choices of the user that decide what is reported.
+#[derive(Clone, Copy)]
+struct Given {
+    scales: bool,
+    robot: bool,
 }
 
 impl Fit {
@@ -123,8 +128,8 @@ impl Fit {
         warn_of_others(session, &self.output(), &checksum);
         let report: Vec<PathBuf> = files.into_iter().skip(1).map(|(path, _)| path).collect();
         let unreported = unreported(&model.trust.findings, &reported);
-        let with_robot = fit_options.robot.is_some();
-        Ok(self.result(session, (&model, &unreported, with_robot), &report, judged.as_ref()))
+        let given = Given { scales: !prepared.given_scales.is_empty(), robot: fit_options.robot.is_some() };
+        Ok(self.result(session, (&model, &unreported, given), &report, judged.as_ref()))
     }
 
     fn output(&self) -> PathBuf {
@@ -144,7 +149,7 @@ impl Fit {
     fn result(
         &self,
         session: &Session,
-        (model, unreported, with_robot): (&Model, &[Finding], bool),
+        (model, unreported, given): (&Model, &[Finding], Given),
         written: &[PathBuf],
         held_out: Option<&Evaluation>,
     ) -> Output {
@@ -165,15 +170,17 @@ impl Fit {
         if let Some(left_out) = left_out(&data.left_out) {
             lines.add("left out", &left_out);
         }
-        let is_major = |of: &&Decision| {
-            ["at once", "rows", "learner"].contains(&of.what.as_str())
-                || (of.what == "scale" && of.why != "given")
-                || of.flag == ROBOT
+        let with_robot = |of: &Decision| matches!(of.what, Subject::Metric | Subject::TaskSpace);
+        let is_major = |of: &&Decision| match of.what {
+            Subject::AtOnce | Subject::Rows | Subject::Learner => true,
+            // If the user gave scales, the fit chose none.
+            Subject::Scale => !given.scales,
+            _ => with_robot(of),
         };
         for Decision { what, value, why, .. } in model.decisions.iter().filter(is_major) {
-            lines.add(what, &format!("{value} ({why})"));
+            lines.add(&what.to_string(), &format!("{value} ({why})"));
         }
-        if with_robot && model.decisions.iter().all(|of| of.flag != ROBOT) {
+        if given.robot && !model.decisions.iter().any(with_robot) {
             let joints = counted(model.state.len(), "channel");
             let what =
                 "neither its inertia nor constraints of its links predict movements better: learnt as without it";
