@@ -58,7 +58,8 @@ mod write;
 
 pub use error::{Fault, ReadError};
 pub use guard::catches_panics;
-pub use options::{Format, Nan, ReadOptions, SamplesAre, TimeUnit};
+pub use motion::TimeUnit;
+pub use options::{Format, Nan, ReadOptions, SamplesAre};
 pub use read::{files_of, pieces_of, read, read_all, read_further, read_pieces, read_with_context};
 pub use regular_file::{FileState, read_bounded, read_bytes, read_text};
 pub use resample::{ResampleError, resampled};

@@ -1,3 +1,4 @@
+use motion::TimeUnit;
 use serde::{Deserialize, Serialize};
 
 /// Options for reading files. Everything that is not set is detected.
@@ -116,23 +117,6 @@ pub enum Nan {
     Drop,
     /// Up to 3 in a row are interpolated; more cause an error.
     Fill,
-}
-
-/// The unit of numeric stamps.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum TimeUnit {
-    /// s.
-    #[serde(rename = "s")]
-    Seconds,
-    /// ms.
-    #[serde(rename = "ms")]
-    Milliseconds,
-    /// µs.
-    #[serde(rename = "us")]
-    Microseconds,
-    /// ns.
-    #[serde(rename = "ns")]
-    Nanoseconds,
 }
 
 /// The layout of arrays.

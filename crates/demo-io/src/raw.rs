@@ -1,7 +1,7 @@
 //! Unchecked episodes, as readers return them.
 
 use crate::names::selection::{flags, unmatched};
-use crate::rows::stamps::{Stamp, TicksPerSecond};
+use crate::rows::stamps::Stamp;
 use motion::{Channel, Episode, Finding, Labels, Recordings, Source, Times, Verdict};
 use nalgebra::DMatrix;
 
@@ -182,13 +182,13 @@ impl Clock {
     }
 
     /// The times of `len` samples, in seconds.
-    pub(crate) fn seconds(self, len: usize, ticks: TicksPerSecond) -> Vec<f64> {
+    pub(crate) fn seconds(self, len: usize, unit: TimeUnit) -> Vec<f64> {
         match self {
             Clock::Even(period) => even_times(period, len),
             Clock::Stamps { mut since, .. } => {
-                if ticks.0 != 1.0 {
+                if unit != TimeUnit::Seconds {
                     for time in &mut since {
-                        *time /= ticks.0;
+                        *time /= unit.per_second();
                     }
                 }
                 since
@@ -207,22 +207,21 @@ pub(crate) fn even_times(step: f64, len: usize) -> Vec<f64> {
     (0..len).map(|sample| sample as f64 * step).collect()
 }
 
-/// Converts stamps to seconds since the first. Their unit is `ticks` if it is known, else the unit in the first stamp, else
+/// Converts stamps to seconds since the first. They count in `unit` if it is known, else the unit in the first stamp, else
 /// the user's, else a guess from `name` and the size of the stamp.
 pub(crate) fn seconds_since_first(
-    stamps: impl Iterator<Item = (Stamp, Option<TicksPerSecond>)>,
+    stamps: impl Iterator<Item = (Stamp, Option<TimeUnit>)>,
     name: &str,
     asked: Option<TimeUnit>,
-    ticks: &mut Option<TicksPerSecond>,
+    unit: &mut Option<TimeUnit>,
 ) -> Vec<f64> {
-    let asked = TicksPerSecond::asked(asked);
     let mut clock = Clock::new(None);
-    for (stamp, unit) in stamps {
-        let guess = || stamp.is_finite().then(|| unit.or(asked).unwrap_or_else(|| TicksPerSecond::guess(name, stamp)));
-        *ticks = ticks.or_else(guess);
+    for (stamp, stated) in stamps {
+        let found = || stamp.is_finite().then(|| stated.or(asked).unwrap_or_else(|| stamp.unit(name)));
+        *unit = unit.or_else(found);
         clock.push(stamp);
     }
-    clock.seconds(0, ticks.unwrap_or(TicksPerSecond(1.0)))
+    clock.seconds(0, unit.unwrap_or(TimeUnit::Seconds))
 }
 
 /// Checks that the seconds of a flag are above 0.
@@ -278,10 +277,10 @@ mod tests {
     #[test]
     fn a_clock_without_a_first_stamp_waits_for_one() {
         let mut clock = Clock::new(None);
-        for stamp in [Stamp::MISSING, Stamp::whole(5), Stamp::whole(7)] {
+        for stamp in [Stamp::MISSING, Stamp::whole(5000), Stamp::whole(6000)] {
             clock.push(stamp);
         }
-        let seconds = clock.seconds(3, TicksPerSecond(2.0));
+        let seconds = clock.seconds(3, TimeUnit::Milliseconds);
         assert!(seconds[0].is_nan());
         assert_eq!(seconds[1..], [0.0, 1.0]);
     }

@@ -92,7 +92,7 @@ pub use policy::{NegativeGradient, Policy, Potential};
 pub use recordings::{Channel, Episode, Recordings, Rows, Source, is_called_context};
 pub use samples::{Labels, SampleIndex, SampleSet};
 pub use scaled::scaled;
-pub use times::{Times, whole_step};
+pub use times::{TimeUnit, Times, whole_step};
 pub use trajectory::Trajectory;
 
 /// Compiles the program in the README.

@@ -1,6 +1,8 @@
 use std::borrow::Cow;
 use std::ops::Range;
 
+use serde::{Deserialize, Serialize};
+
 use crate::median::upper_median;
 
 /// Times at which the samples of a movement were taken, in seconds.
@@ -95,6 +97,64 @@ impl Times {
     }
 }
 
+/// The unit of numeric stamps.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum TimeUnit {
+    /// s.
+    #[serde(rename = "s")]
+    Seconds,
+    /// ms.
+    #[serde(rename = "ms")]
+    Milliseconds,
+    /// µs.
+    #[serde(rename = "us")]
+    Microseconds,
+    /// ns.
+    #[serde(rename = "ns")]
+    Nanoseconds,
+}
+
+impl TimeUnit {
+    /// All units, the longest first.
+    pub const ALL: [TimeUnit; 4] =
+        [TimeUnit::Seconds, TimeUnit::Milliseconds, TimeUnit::Microseconds, TimeUnit::Nanoseconds];
+
+    /// Number of these in a second.
+    pub const fn per_second(self) -> f64 {
+        match self {
+            TimeUnit::Seconds => 1.0,
+            TimeUnit::Milliseconds => 1e3,
+            TimeUnit::Microseconds => 1e6,
+            TimeUnit::Nanoseconds => 1e9,
+        }
+    }
+
+    /// The symbol in ASCII: "us".
+    pub const fn symbol(self) -> &'static str {
+        self.words()[0]
+    }
+
+    /// The name in the plural: "microseconds".
+    pub const fn name(self) -> &'static str {
+        self.words()[1]
+    }
+
+    /// The unit with this symbol, name or abbreviation.
+    pub fn of(word: &str) -> Option<TimeUnit> {
+        TimeUnit::ALL.into_iter().find(|unit| unit.words().contains(&word))
+    }
+
+    /// The symbol, the name, and abbreviations in names of columns.
+    const fn words(self) -> &'static [&'static str] {
+        match self {
+            TimeUnit::Seconds => &["s", "seconds", "sec", "secs"],
+            TimeUnit::Milliseconds => &["ms", "milliseconds", "msec", "millis"],
+            TimeUnit::Microseconds => &["us", "microseconds", "usec", "micros", "µs"],
+            TimeUnit::Nanoseconds => &["ns", "nanoseconds", "nsec", "nanos"],
+        }
+    }
+}
+
 /// Collects time stamps.
 impl FromIterator<f64> for Times {
     fn from_iter<I: IntoIterator<Item = f64>>(stamps: I) -> Self {
@@ -119,6 +179,7 @@ pub fn whole_step(step: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use proptest::prelude::*;
+    use serde::de::value::{self, StrDeserializer};
 
     use super::*;
 
@@ -131,6 +192,14 @@ mod tests {
             let distance = |to: f64| (to - step).abs();
             prop_assert!(distance(found) <= distance(step / (1.0 + off)));
             prop_assert!(found == 1.0 / (1.0 / found).round() || found == (found * 1000.0).round() / 1000.0);
+        }
+    }
+
+    #[test]
+    fn time_units_are_stored_as_their_symbols() {
+        for unit in TimeUnit::ALL {
+            let stored = StrDeserializer::<value::Error>::new(unit.symbol());
+            assert_eq!(TimeUnit::deserialize(stored), Ok(unit));
         }
     }
 

@@ -1,8 +1,8 @@
 //! Arrays of any format: descriptions and contents.
 
-use crate::ReadError;
 use crate::raw::remark;
-use crate::rows::stamps::{Stamp, TicksPerSecond};
+use crate::rows::stamps::Stamp;
+use crate::{ReadError, TimeUnit};
 use motion::Finding;
 
 /// Description of an array, read before its numbers.
@@ -34,7 +34,7 @@ pub(crate) enum Data {
     /// Integers. Stamps need them exactly.
     Whole(Vec<i64>),
     /// Dates.
-    Dates(Vec<i64>, TicksPerSecond),
+    Dates(Vec<i64>, TimeUnit),
     Text(Vec<String>),
 }
 
@@ -87,11 +87,11 @@ impl Data {
         }
     }
 
-    pub(crate) fn stamp(&self, at: usize) -> (Stamp, Option<TicksPerSecond>) {
+    pub(crate) fn stamp(&self, at: usize) -> (Stamp, Option<TimeUnit>) {
         match self {
             Data::Numbers(numbers) => (Stamp::number(numbers[at]), None),
             Data::Whole(whole) => (Stamp::whole(whole[at]), None),
-            Data::Dates(ticks, unit) => (Stamp::whole(ticks[at]), Some(*unit)),
+            Data::Dates(dates, unit) => (Stamp::whole(dates[at]), Some(*unit)),
             Data::Text(texts) => Stamp::text(&texts[at]).unwrap_or((Stamp::MISSING, None)),
         }
     }
@@ -110,7 +110,7 @@ impl Data {
         match self {
             Data::Numbers(numbers) => Data::Numbers(transposed(&numbers, shape)),
             Data::Whole(whole) => Data::Whole(transposed(&whole, shape)),
-            Data::Dates(ticks, unit) => Data::Dates(transposed(&ticks, shape), unit),
+            Data::Dates(dates, unit) => Data::Dates(transposed(&dates, shape), unit),
             Data::Text(texts) => Data::Text(transposed(&texts, shape)),
         }
     }

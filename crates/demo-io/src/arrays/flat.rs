@@ -49,10 +49,10 @@ impl Columns<'_> {
         let ranges = self.ranges(&state, load)?;
         let times = match (&step, stamps) {
             (None, Some((stamps, name))) => {
-                let mut ticks = None;
+                let mut unit = None;
                 let of = |samples: &Samples| {
                     let stamps = samples.rows.iter().map(|&row| (Stamp::number(stamps[row]), None));
-                    seconds_since_first(stamps, &name, input.options.time_unit, &mut ticks)
+                    seconds_since_first(stamps, &name, input.options.time_unit, &mut unit)
                 };
                 ranges.iter().map(of).collect()
             }
@@ -131,10 +131,10 @@ impl Columns<'_> {
         let all = state.episodes * state.samples;
         let counts = if state.episodes > 1 { [all, state.samples] } else { [all; 2] };
         let stamps = self.0.by_sample(field, &counts, load)?;
-        let mut ticks = None;
+        let mut unit = None;
         let times = ranges.iter().map(|samples| {
             let stamps = samples.rows.iter().map(|&row| stamps.stamp(row % stamps.len()));
-            seconds_since_first(stamps, name, self.0.input.options.time_unit, &mut ticks)
+            seconds_since_first(stamps, name, self.0.input.options.time_unit, &mut unit)
         });
         Ok(times.collect())
     }

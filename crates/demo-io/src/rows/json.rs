@@ -4,7 +4,8 @@ use std::fmt;
 
 use serde::de::{Deserialize, Deserializer, MapAccess, SeqAccess, Visitor};
 
-use crate::rows::stamps::{Stamp, TicksPerSecond};
+use crate::TimeUnit;
+use crate::rows::stamps::Stamp;
 use crate::rows::table::Row;
 
 /// A document whose keys keep the order of the text.
@@ -64,7 +65,7 @@ impl Json {
     }
 
     /// The stamp, with its unit if the text determines it.
-    pub(crate) fn stamp(&self) -> Option<(Stamp, Option<TicksPerSecond>)> {
+    pub(crate) fn stamp(&self) -> Option<(Stamp, Option<TimeUnit>)> {
         match self {
             Json::Whole(value) => Some((Stamp::whole(*value), None)),
             Json::Text(text) => Stamp::text(text),
@@ -99,7 +100,7 @@ impl Row for Vec<Json> {
         self[column].number().ok_or_else(|| self[column].to_string())
     }
 
-    fn stamp(&self, column: usize) -> Result<(Stamp, Option<TicksPerSecond>), String> {
+    fn stamp(&self, column: usize) -> Result<(Stamp, Option<TimeUnit>), String> {
         self[column].stamp().ok_or_else(|| self[column].to_string())
     }
 

@@ -16,9 +16,9 @@ use crate::input::Input;
 use crate::names::selection::select;
 use crate::raw::{RawRecordings, remark};
 use crate::rows::roles::{Column, Content};
-use crate::rows::stamps::{Stamp, TicksPerSecond};
+use crate::rows::stamps::Stamp;
 use crate::rows::table::{Row, Table};
-use crate::{Fault, ReadError, ReadOptions};
+use crate::{Fault, ReadError, ReadOptions, TimeUnit};
 use motion::Finding;
 
 /// Properties of columns that another file describes.
@@ -256,7 +256,7 @@ impl Row for GroupRow<'_> {
         self.values(column).map_or(Ok(f64::NAN), |(values, at)| values.number(at))
     }
 
-    fn stamp(&self, column: usize) -> Result<(Stamp, Option<TicksPerSecond>), String> {
+    fn stamp(&self, column: usize) -> Result<(Stamp, Option<TimeUnit>), String> {
         self.values(column).map_or(Ok((Stamp::MISSING, None)), |(values, at)| values.stamp(at))
     }
 

@@ -12,10 +12,6 @@ pub(crate) struct Stamp {
     part: f64,
 }
 
-/// Number of a stamp's units per second.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct TicksPerSecond(pub(crate) f64);
-
 /// Below this, f64 holds all digits that occur in files.
 const LARGE: f64 = 1e6;
 
@@ -32,7 +28,7 @@ impl Stamp {
     }
 
     /// Parses digits, decimals, or a date; with the unit if the text determines it.
-    pub(crate) fn text(text: &str) -> Option<(Self, Option<TicksPerSecond>)> {
+    pub(crate) fn text(text: &str) -> Option<(Self, Option<TimeUnit>)> {
         if let Ok(whole) = text.parse() {
             return Some((Stamp::whole(whole), None));
         }
@@ -45,7 +41,7 @@ impl Stamp {
             }
             return Some((Stamp::number(value), None));
         }
-        nanoseconds_of_date(text).map(|whole| (Stamp::whole(whole), Some(TicksPerSecond(1e9))))
+        nanoseconds_of_date(text).map(|whole| (Stamp::whole(whole), Some(TimeUnit::Nanoseconds)))
     }
 
     /// Adds the nanoseconds of another column; the unit of the sum is nanoseconds.
@@ -71,48 +67,24 @@ impl Stamp {
     fn magnitude(self) -> f64 {
         self.whole as f64 + self.part
     }
+
+    /// The unit of a column's stamps, guessed from its name (`t_ms`, `time [us]`), else from the size of this first one: a stamp far too
+    /// large for seconds since 1970 counts milliseconds, microseconds or nanoseconds.
+    pub(crate) fn unit(self, name: &str) -> TimeUnit {
+        unit_in(name).unwrap_or_else(|| match self.magnitude().abs() {
+            size if size > 1e17 => TimeUnit::Nanoseconds,
+            size if size > 1e14 => TimeUnit::Microseconds,
+            size if size > 1e11 => TimeUnit::Milliseconds,
+            _ => TimeUnit::Seconds,
+        })
+    }
 }
 
-impl TicksPerSecond {
-    /// The unit of `--time-unit`, if given.
-    pub(crate) fn asked(unit: Option<TimeUnit>) -> Option<Self> {
-        unit.map(|unit| {
-            TicksPerSecond(match unit {
-                TimeUnit::Seconds => 1.0,
-                TimeUnit::Milliseconds => 1e3,
-                TimeUnit::Microseconds => 1e6,
-                TimeUnit::Nanoseconds => 1e9,
-            })
-        })
-    }
-
-    /// Guesses the unit from a column's name (`t_ms`, `time [us]`), else from the size of its first stamp: a stamp far too
-    /// large for seconds since 1970 counts milliseconds, microseconds or nanoseconds.
-    pub(crate) fn guess(name: &str, first: Stamp) -> Self {
-        if let Some(known) = Self::from_name(name) {
-            return known;
-        }
-        let size = first.magnitude().abs();
-        TicksPerSecond(match size {
-            _ if size > 1e17 => 1e9,
-            _ if size > 1e14 => 1e6,
-            _ if size > 1e11 => 1e3,
-            _ => 1.0,
-        })
-    }
-
-    fn from_name(name: &str) -> Option<Self> {
-        let name = name.trim().to_ascii_lowercase();
-        let name = name.trim_end_matches([']', ')']);
-        let unit = name.rsplit(['_', '[', '(', ' ']).next().filter(|unit| unit.len() < name.len())?;
-        Some(TicksPerSecond(match unit {
-            "s" | "sec" | "secs" | "seconds" => 1.0,
-            "ms" | "msec" | "millis" | "milliseconds" => 1e3,
-            "us" | "usec" | "µs" | "micros" | "microseconds" => 1e6,
-            "ns" | "nsec" | "nanos" | "nanoseconds" => 1e9,
-            _ => return None,
-        }))
-    }
+/// The unit at the end of a column's name.
+fn unit_in(name: &str) -> Option<TimeUnit> {
+    let name = name.trim().to_ascii_lowercase();
+    let name = name.trim_end_matches([']', ')']);
+    TimeUnit::of(name.rsplit(['_', '[', '(', ' ']).next().filter(|unit| unit.len() < name.len())?)
 }
 
 /// Nanoseconds since 1970 of `2023-11-14 22:13:20.05` or `14.11.2023 22:13:20,05`, with `T` or a blank, with or without a
@@ -177,8 +149,8 @@ mod tests {
 
     fn seconds_between(name: &str, first: &str, second: &str) -> f64 {
         let (first, unit) = Stamp::text(first).unwrap();
-        let ticks = unit.unwrap_or_else(|| TicksPerSecond::guess(name, first));
-        Stamp::text(second).unwrap().0.since(first) / ticks.0
+        let unit = unit.unwrap_or_else(|| first.unit(name));
+        Stamp::text(second).unwrap().0.since(first) / unit.per_second()
     }
 
     #[test]

@@ -6,8 +6,8 @@ use crate::raw::{
     Clock, MOST_CHANNELS, MOST_EPISODES, RawEpisode, RawRecordings, Rows, Unknown, no_time, period, unused,
 };
 use crate::rows::roles::{Column, Roles, assign, shortened, unit};
-use crate::rows::stamps::{Stamp, TicksPerSecond};
-use crate::{Fault, ReadError, ReadOptions};
+use crate::rows::stamps::Stamp;
+use crate::{Fault, ReadError, ReadOptions, TimeUnit};
 use motion::{Channel, Labels};
 
 /// One row of a table. A column that holds something else returns its text as the error.
@@ -15,7 +15,7 @@ pub(crate) trait Row {
     /// NaN if the value is missing.
     fn number(&self, column: usize) -> Result<f64, String>;
     /// With the unit, if the text determines it.
-    fn stamp(&self, column: usize) -> Result<(Stamp, Option<TicksPerSecond>), String>;
+    fn stamp(&self, column: usize) -> Result<(Stamp, Option<TimeUnit>), String>;
     /// Writes the label to `label`.
     fn label(&self, column: usize, label: &mut String);
 }
@@ -36,9 +36,9 @@ pub(crate) struct Table {
     names: Vec<String>,
     roles: Roles,
     period: Option<f64>,
-    ticks: Option<TicksPerSecond>,
+    time_unit: Option<TimeUnit>,
     /// The user's unit of numeric stamps.
-    asked_ticks: Option<TicksPerSecond>,
+    asked_unit: Option<TimeUnit>,
     /// Name of the only episode, if no column distinguishes episodes.
     only: String,
     episodes: Vec<RawEpisode>,
@@ -83,8 +83,8 @@ impl Table {
             word,
             names: columns.iter().map(|column| column.name.clone()).collect(),
             period,
-            ticks: None,
-            asked_ticks: TicksPerSecond::asked(options.time_unit),
+            time_unit: None,
+            asked_unit: options.time_unit,
             only: only.to_owned(),
             episodes: Vec::new(),
             clocks: Vec::new(),
@@ -122,7 +122,7 @@ impl Table {
     /// The columns that determine where a table may be cut, known after its first rows; `None` if its parts cannot be read like the
     /// whole.
     pub(crate) fn cutting(&self) -> Option<Cutting> {
-        let has_unit = self.ticks.is_some() || self.period.is_some();
+        let has_unit = self.time_unit.is_some() || self.period.is_some();
         let constraint = self.roles.constraint.filter(|&column| !says(&self.names[column]));
         Some(Cutting { episode: self.roles.episode?, constraint }).filter(|_| has_unit)
     }
@@ -131,15 +131,13 @@ impl Table {
     pub(crate) fn push(&mut self, place: u64, row: &impl Row) -> Result<(), ReadError> {
         let episode = self.episode_of(row)?;
         if let (Some(column), None) = (self.roles.time, self.period) {
-            let (mut stamp, mut ticks) = row.stamp(column).map_err(|text| self.not_a_number(&text, column, place))?;
+            let (mut stamp, mut unit) = row.stamp(column).map_err(|text| self.not_a_number(&text, column, place))?;
             if let Some(column) = self.roles.nanoseconds {
                 let more = row.number(column).map_err(|text| self.not_a_number(&text, column, place))?;
-                (stamp, ticks) = (stamp.with_nanoseconds(more), Some(TicksPerSecond(1e9)));
+                (stamp, unit) = (stamp.with_nanoseconds(more), Some(TimeUnit::Nanoseconds));
             }
-            if self.ticks.is_none() && stamp.is_finite() {
-                self.ticks = Some(
-                    ticks.or(self.asked_ticks).unwrap_or_else(|| TicksPerSecond::guess(&self.names[column], stamp)),
-                );
+            if self.time_unit.is_none() && stamp.is_finite() {
+                self.time_unit = Some(unit.or(self.asked_unit).unwrap_or_else(|| stamp.unit(&self.names[column])));
             }
             self.clocks[episode].push(stamp);
         }
@@ -245,7 +243,7 @@ impl Table {
 
     /// Returns the collected rows.
     pub(crate) fn finish(mut self) -> RawRecordings {
-        let ticks = self.ticks.unwrap_or(TicksPerSecond(1.0));
+        let time_unit = self.time_unit.unwrap_or(TimeUnit::Seconds);
         let name = |&index: &usize| self.names[index].as_str();
         let channels = self.roles.state.iter().chain(&self.roles.context).map(name);
         let channels =
@@ -262,7 +260,7 @@ impl Table {
         let labels_vary =
             self.roles.constraint.is_some_and(|column| says(&self.names[column])) || self.episodes.iter().any(differ);
         for (raw, clock) in self.episodes.iter_mut().zip(self.clocks) {
-            raw.times = clock.seconds(raw.rows.len(), ticks);
+            raw.times = clock.seconds(raw.rows.len(), time_unit);
             // The vectors grew number by number and live as long as the recordings, so spare capacity is released.
             [&mut raw.times, &mut raw.positions, &mut raw.velocities].into_iter().for_each(Vec::shrink_to_fit);
             raw.constraint.take_if(|labels| !labels_vary || labels.is_blank());

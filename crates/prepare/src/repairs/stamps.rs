@@ -1,4 +1,4 @@
-use motion::{Demonstrations, Episode, Subject, Times, Verdict, upper_median, whole_step};
+use motion::{Demonstrations, Episode, Subject, TimeUnit, Times, Verdict, upper_median, whole_step};
 
 use crate::PrepareError;
 use crate::notes::{Notes, and_more};
@@ -10,21 +10,9 @@ const EVEN: f64 = 0.01;
 /// Steps longer than this are hardly in seconds.
 pub(crate) const SLOW: f64 = 5.0;
 /// Units of stamps that are no seconds.
-pub(crate) const UNITS: [TimeUnit; 2] = [
-    TimeUnit { name: "milliseconds", flag: "ms", a_second: 1e3 },
-    TimeUnit { name: "microseconds", flag: "us", a_second: 1e6 },
-];
+pub(crate) const UNITS: [TimeUnit; 2] = [TimeUnit::Milliseconds, TimeUnit::Microseconds];
 /// A step longer than this multiple of the usual one is a gap.
 const GAP: f64 = 3.0;
-
-#[derive(Clone, Copy)]
-pub(crate) struct TimeUnit {
-    pub(crate) name: &'static str,
-    /// Its word in `--time-unit`.
-    pub(crate) flag: &'static str,
-    /// Number of these in a second.
-    pub(crate) a_second: f64,
-}
 
 /// Determines the time step of every movement, or keeps its stamps if they are uneven.
 pub(crate) fn decide(
@@ -101,16 +89,16 @@ pub(crate) fn doubt(demonstrations: &Demonstrations, notes: &mut Notes) {
     }
     // The first unit in which steps are short enough.
     let [milliseconds, microseconds] = UNITS;
-    let unit = if usual <= SLOW * milliseconds.a_second { milliseconds } else { microseconds };
+    let unit = if usual <= SLOW * milliseconds.per_second() { milliseconds } else { microseconds };
     let movement = &demonstrations.trajectories()[0];
     let [step, episode] = [usual, movement.duration()].map(short);
     notes.found(
         Verdict::Doubtful,
-        format!("samples are {step} s apart, an episode lasts {episode} s; stamps may be {}", unit.name),
+        format!("samples are {step} s apart, an episode lasts {episode} s; stamps may be {}", unit.name()),
         format!(
             "if so, --time-unit {} or --dt {}; learnt velocities are per second of the stamps",
-            unit.flag,
-            short(usual / unit.a_second)
+            unit.symbol(),
+            short(usual / unit.per_second())
         ),
     );
 }

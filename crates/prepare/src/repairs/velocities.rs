@@ -192,17 +192,17 @@ fn made_of_positions(episodes: &[Episode]) -> Option<Agreement> {
 /// the steps.
 fn in_seconds(episodes: &mut [Episode], fit: &Steps, notes: &mut Notes) -> bool {
     let step = usual_step(episodes).unwrap_or(1.0);
-    let Some(unit) = UNITS.into_iter().find(|unit| step > SLOW && fit.agree(unit.a_second)) else { return false };
+    let Some(unit) = UNITS.into_iter().find(|unit| step > SLOW && fit.agree(unit.per_second())) else { return false };
     for episode in episodes.iter_mut() {
-        episode.times = episode.times.divided_by(unit.a_second);
+        episode.times = episode.times.divided_by(unit.per_second());
     }
-    let what = format!("stamps are {step:.0} apart and velocities {} times the steps", unit.a_second);
+    let what = format!("stamps are {step:.0} apart and velocities {} times the steps", unit.per_second());
     // Keeps only the valid one of two decisions on the time step.
     notes.decisions.retain(|decision| decision.what != Subject::TimeStep);
-    let seconds = format!("{} s", step / unit.a_second);
-    notes.decided(Subject::TimeStep, seconds, format!("{what}: stamps are {}", unit.name), "--dt");
-    let next = format!("--time-unit {}, or --dt", unit.flag);
-    notes.found(Verdict::Doubtful, format!("{what}: stamps were read as {}", unit.name), next);
+    let seconds = format!("{} s", step / unit.per_second());
+    notes.decided(Subject::TimeStep, seconds, format!("{what}: stamps are {}", unit.name()), "--dt");
+    let next = format!("--time-unit {}, or --dt", unit.symbol());
+    notes.found(Verdict::Doubtful, format!("{what}: stamps were read as {}", unit.name()), next);
     true
 }
 

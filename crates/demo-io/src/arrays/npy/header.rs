@@ -1,7 +1,7 @@
 use std::io::Read;
 
 use super::MAGIC;
-use crate::{Fault, ReadError};
+use crate::{Fault, ReadError, TimeUnit};
 
 /// The header of a .npy file, which describes its array.
 #[derive(Debug, Clone, PartialEq)]
@@ -11,8 +11,8 @@ pub(crate) struct Header {
     /// Bytes of one value.
     pub(crate) size: usize,
     pub(super) big_endian: bool,
-    /// Ticks per second of dates.
-    pub(super) ticks: f64,
+    /// The unit of dates.
+    pub(super) unit: TimeUnit,
     pub(super) fortran: bool,
     pub(crate) shape: Vec<usize>,
     /// Bytes before the numbers.
@@ -56,12 +56,12 @@ impl Header {
         let shape = shape[..shape.find(')')?].split(',').map(str::trim).filter(|length| !length.is_empty());
         // Python 2 wrote long integers as 40L.
         let shape = shape.map(|length| length.trim_end_matches('L').parse().ok()).collect::<Option<Vec<_>>>()?;
-        let (big_endian, letter, size, ticks) = match descr.strip_prefix(['\'', '"']) {
+        let (big_endian, letter, size, unit) = match descr.strip_prefix(['\'', '"']) {
             Some(descr) => value_type(&descr[..descr.find(['\'', '"'])?])?,
             // A list of fields.
-            None => (false, 'V', 1, 0.0),
+            None => (false, 'V', 1, TimeUnit::Seconds),
         };
-        Some(Self { letter, size, big_endian, ticks, fortran, shape, len })
+        Some(Self { letter, size, big_endian, unit, fortran, shape, len })
     }
 }
 
@@ -71,8 +71,8 @@ fn value_of<'a>(text: &'a str, key: &str) -> Option<&'a str> {
     text[at + key.len() + 2..].trim_start().strip_prefix(':').map(str::trim_start)
 }
 
-/// Byte order, letter, size and ticks per second of `<f8`, `|b1`, `>M8[ns]`, `<U12`.
-fn value_type(descr: &str) -> Option<(bool, char, usize, f64)> {
+/// Byte order, letter, size and unit of `<f8`, `|b1`, `>M8[ns]`, `<U12`.
+fn value_type(descr: &str) -> Option<(bool, char, usize, TimeUnit)> {
     let (order, rest) = match descr.chars().next()? {
         order @ ('<' | '>' | '|' | '=') => (order, &descr[1..]),
         _ => ('=', descr),
@@ -81,13 +81,8 @@ fn value_type(descr: &str) -> Option<(bool, char, usize, f64)> {
     let (size, unit) = rest[letter.len_utf8()..].split_once('[').unwrap_or((&rest[letter.len_utf8()..], ""));
     let size: usize = if size.is_empty() { 1 } else { size.parse().ok()? };
     let size = if letter == 'U' { size.checked_mul(4)? } else { size };
-    let ticks = match unit.trim_end_matches(']') {
-        "ns" => 1e9,
-        "us" => 1e6,
-        "ms" => 1e3,
-        _ => 1.0,
-    };
-    Some((order == '>', letter, size, ticks))
+    let unit = TimeUnit::of(unit.trim_end_matches(']')).unwrap_or(TimeUnit::Seconds);
+    Some((order == '>', letter, size, unit))
 }
 
 #[cfg(test)]
@@ -107,7 +102,10 @@ mod tests {
         assert_eq!((scalar.letter, scalar.size, scalar.shape.len()), ('U', 20, 0));
         assert_eq!(parsed("{\"shape\":(3L,), \"fortran_order\":False, \"descr\":\"|b1\"}").unwrap().shape, [3]);
         assert_eq!(parsed("{'descr': [('x', '<f8')], 'fortran_order': False, 'shape': (3,)}").unwrap().letter, 'V');
-        assert_eq!(parsed("{'descr': '<M8[us]', 'fortran_order': False, 'shape': (3,)}").unwrap().ticks, 1e6);
+        assert_eq!(
+            parsed("{'descr': '<M8[us]', 'fortran_order': False, 'shape': (3,)}").unwrap().unit,
+            TimeUnit::Microseconds
+        );
     }
 
     #[test]

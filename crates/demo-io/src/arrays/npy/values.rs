@@ -2,7 +2,6 @@ use std::io::{self, Read};
 
 use super::Header;
 use crate::arrays::array::Data;
-use crate::rows::stamps::TicksPerSecond;
 
 /// Reads `count` values; memory grows only with the bytes that arrive.
 pub(super) fn read(header: &Header, count: usize, from: &mut dyn Read) -> io::Result<Data> {
@@ -21,7 +20,7 @@ pub(super) fn read(header: &Header, count: usize, from: &mut dyn Read) -> io::Re
         ('u', 8) => each(size, count, from, number(|b| u64::from_le_bytes(b) as f64)).map(Data::Numbers),
         ('b' | 'u', _) | ('i', 8) => each(size, count, from, whole(i64::from_le_bytes)).map(Data::Whole),
         ('M', 8) => {
-            let not_a_time = |ticks: Vec<i64>| Data::Dates(ticks, TicksPerSecond(header.ticks));
+            let not_a_time = |dates: Vec<i64>| Data::Dates(dates, header.unit);
             each(size, count, from, whole(i64::from_le_bytes)).map(not_a_time)
         }
         ('i', 1 | 2 | 4) => {

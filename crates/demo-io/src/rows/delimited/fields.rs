@@ -1,6 +1,7 @@
 use csv::ByteRecord;
 
-use crate::rows::stamps::{Stamp, TicksPerSecond};
+use crate::TimeUnit;
+use crate::rows::stamps::Stamp;
 use crate::rows::table::Row;
 
 /// The fields of a record as numbers, stamps and labels.
@@ -20,7 +21,7 @@ impl Row for Fields<'_> {
         }
     }
 
-    fn stamp(&self, column: usize) -> Result<(Stamp, Option<TicksPerSecond>), String> {
+    fn stamp(&self, column: usize) -> Result<(Stamp, Option<TimeUnit>), String> {
         let field = self.record[column].trim_ascii();
         if is_missing(field) {
             return Ok((Stamp::MISSING, None));

@@ -13,8 +13,8 @@ use crate::raw::{
 use crate::rows::documents::Documents;
 use crate::rows::json::Json;
 use crate::rows::roles::named;
-use crate::rows::stamps::{Stamp, TicksPerSecond};
-use crate::{Fault, ReadError};
+use crate::rows::stamps::Stamp;
+use crate::{Fault, ReadError, TimeUnit};
 use motion::{Channel, Finding};
 
 /// The messages of a topic. Faults in them matter only if the topic is selected.
@@ -198,7 +198,7 @@ impl<'a> Topic<'a> {
             even_times(step, len)
         } else {
             let stamps = stamps.iter().map(|&stamp| (Stamp::whole(stamp), None));
-            seconds_since_first(stamps, "", None, &mut Some(TicksPerSecond(1e9)))
+            seconds_since_first(stamps, "", None, &mut Some(TimeUnit::Nanoseconds))
         };
         let draft = RawEpisode {
             name: self.input.stem.clone(),

@@ -1,4 +1,4 @@
-use parquet::basic::{LogicalType, TimeUnit, Type};
+use parquet::basic::{self, LogicalType, Type};
 use parquet::column::page::Page;
 use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
 use parquet::data_type::DataType;
@@ -11,8 +11,8 @@ use crate::arrays::array::Data;
 use crate::arrays::npy;
 use crate::input::Input;
 use crate::raw::MOST_CHANNELS;
-use crate::rows::stamps::{Stamp, TicksPerSecond};
-use crate::{Fault, ReadError};
+use crate::rows::stamps::Stamp;
+use crate::{Fault, ReadError, TimeUnit};
 
 /// A column of values in the file: one per row, or lists of equal length.
 #[derive(Debug)]
@@ -26,7 +26,7 @@ pub(super) struct Leaf {
     pub(super) text: bool,
     pub(super) whole: bool,
     most_defined: i16,
-    ticks: Option<TicksPerSecond>,
+    time_unit: Option<TimeUnit>,
     half: bool,
     /// Size of a floating-point value in bytes.
     float: Option<usize>,
@@ -36,7 +36,7 @@ pub(super) struct Leaf {
 #[derive(Debug)]
 pub(super) struct Values {
     data: Data,
-    ticks: Option<TicksPerSecond>,
+    time_unit: Option<TimeUnit>,
 }
 
 impl Leaf {
@@ -77,7 +77,7 @@ impl Leaf {
             text: matches!(physical, Type::BYTE_ARRAY | Type::FIXED_LEN_BYTE_ARRAY) && !half,
             whole: matches!(physical, Type::INT32 | Type::INT64 | Type::BOOLEAN),
             most_defined: column.max_def_level(),
-            ticks: ticks(column),
+            time_unit: time_unit(column),
             half,
             float: match physical {
                 Type::FLOAT => Some(4),
@@ -112,7 +112,7 @@ impl Leaf {
             let remedy = "--state with columns of numbers or lists of one length";
             return Err(ReadError::Ragged(Fault::new(what, place, remedy)));
         }
-        Ok(Values { data, ticks: self.ticks })
+        Ok(Values { data, time_unit: self.time_unit })
     }
 
     /// Refuses a dictionary with a repeated value. Pages seldom have checksums, but a dictionary holds each value once,
@@ -229,20 +229,20 @@ fn text(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes).into_owned()
 }
 
-fn ticks(column: &ColumnDescriptor) -> Option<TicksPerSecond> {
+fn time_unit(column: &ColumnDescriptor) -> Option<TimeUnit> {
     if column.physical_type() == Type::INT96 {
-        return Some(TicksPerSecond(1e9));
+        return Some(TimeUnit::Nanoseconds);
     }
     let unit = match column.logical_type_ref() {
         Some(LogicalType::Timestamp(stamp)) => stamp.unit,
         Some(LogicalType::Time(time)) => time.unit,
         _ => return None,
     };
-    Some(TicksPerSecond(match unit {
-        TimeUnit::MILLIS => 1e3,
-        TimeUnit::MICROS => 1e6,
-        TimeUnit::NANOS => 1e9,
-    }))
+    Some(match unit {
+        basic::TimeUnit::MILLIS => TimeUnit::Milliseconds,
+        basic::TimeUnit::MICROS => TimeUnit::Microseconds,
+        basic::TimeUnit::NANOS => TimeUnit::Nanoseconds,
+    })
 }
 
 impl Values {
@@ -255,10 +255,10 @@ impl Values {
         }
     }
 
-    pub(super) fn stamp(&self, at: usize) -> Result<(Stamp, Option<TicksPerSecond>), String> {
+    pub(super) fn stamp(&self, at: usize) -> Result<(Stamp, Option<TimeUnit>), String> {
         match &self.data {
             Data::Text(texts) => Stamp::text(&texts[at]).ok_or_else(|| texts[at].clone()),
-            data => Ok((data.stamp(at).0, self.ticks)),
+            data => Ok((data.stamp(at).0, self.time_unit)),
         }
     }
 

@@ -1,5 +1,7 @@
 //! Interprets a column's name: whether it is a time, its unit, and possible names of its velocity.
 
+use motion::TimeUnit;
+
 const TIMES: [&str; 14] = [
     "t",
     "time",
@@ -16,8 +18,6 @@ const TIMES: [&str; 14] = [
     "rosbagtimestamp",
     "__time",
 ];
-const TIME_UNITS: [&str; 12] =
-    ["s", "sec", "secs", "seconds", "ms", "msec", "milliseconds", "us", "usec", "ns", "nsec", "nanoseconds"];
 
 pub(super) fn is_one_of(known: &[&str], name: &str) -> bool {
     let name = base(name);
@@ -30,7 +30,7 @@ pub(crate) fn is_time(name: &str) -> bool {
         name.strip_suffix("secs").or_else(|| name.strip_suffix("sec")).and_then(|stem| stem.strip_suffix('.'));
     TIMES.contains(&name.as_str())
         || whole_seconds.is_some_and(|stem| TIMES.contains(&stem))
-        || name.rsplit_once('_').is_some_and(|(stem, unit)| TIMES.contains(&stem) && TIME_UNITS.contains(&unit))
+        || name.rsplit_once('_').is_some_and(|(stem, unit)| TIMES.contains(&stem) && TimeUnit::of(unit).is_some())
 }
 
 /// Possible names for the column of nanoseconds beside one of whole seconds: `stamp.nsecs` beside `stamp.secs`.

@@ -20,6 +20,7 @@ fn usual_names_are_understood() {
         (&["", "Time", "X", "Y"], Some(1), None, &[2, 3], &[]),
         (&["t_ms", "q1", "q2", "dq1", "dq2"], Some(0), None, &[1, 2], &[3, 4]),
         (&["t_ms", "q1", "q2", "qd1", "qd2"], Some(0), None, &[1, 2], &[3, 4]),
+        (&["time_micros", "q1", "q2", "qd1", "qd2"], Some(0), None, &[1, 2], &[3, 4]),
         (&["x0", "x1", "v0", "v1"], None, None, &[0, 1], &[2, 3]),
         (&["q_1", "v_1", "q_2", "v_2"], None, None, &[0, 2], &[1, 3]),
         (&["p[0]", "p[1]", "v[0]", "v[1]"], None, None, &[0, 1], &[2, 3]),

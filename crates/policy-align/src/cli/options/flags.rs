@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use align::Bandwidth;
 use clap::builder::PossibleValuesParser;
 use clap::{Arg, Args, Command, Id};
-use demo_io::ReadOptions;
+use demo_io::{ReadOptions, TimeUnit};
 use gp::Hypothesis;
 use policy_align::{
     Choice, ContextUse, FitOptions, LearnerChoice, Model, PrepareOptions, Repair, Smoothing, VelocityUse,
@@ -53,7 +53,7 @@ pub(crate) struct ReadFlags {
     #[arg(long, value_name = "COLUMN")]
     time: Option<String>,
     /// Unit of stamps that are numbers: s, ms, us or ns [default: found]
-    #[arg(long, value_name = "UNIT", hide_possible_values = true, value_parser = ["s", "ms", "us", "ns"])]
+    #[arg(long, value_name = "UNIT", hide_possible_values = true, value_parser = TimeUnit::ALL.map(TimeUnit::symbol))]
     time_unit: Option<String>,
     /// Episode column
     #[arg(long, value_name = "COLUMN")]
