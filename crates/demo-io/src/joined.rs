@@ -31,7 +31,7 @@ fn join(joined: &mut RawRecordings, more: RawRecordings, file: &str, is_last: bo
         let remedy = "--state with channels that all files have, or files of one kind";
         return Err(ReadError::Lengths(Fault::new(what, file, remedy)));
     }
-    let recorded = |drafts: &RawRecordings| drafts.episodes.iter().any(|draft| !draft.velocities.is_empty());
+    let recorded = |recordings: &RawRecordings| recordings.episodes.iter().any(|raw| !raw.velocities.is_empty());
     if !is_last && recorded(joined) != recorded(&more) {
         let what = "velocities are recorded in some of the files only";
         let remedy = "--ignore with the names of the velocities, or files of one kind";

@@ -89,32 +89,32 @@ fn set(
     progress: &mut dyn FnMut(u64),
 ) -> Result<(Recordings, Vec<String>), ReadError> {
     let joined = joined(pieces, |piece| {
-        let drafts = match &piece.span {
+        let recordings = match &piece.span {
             Some(span) => part(&piece.path, span, options, progress),
-            None => drafts(&piece.path, options, progress),
+            None => whole(&piece.path, options, progress),
         }?;
-        Ok(if piece.named_by_file { named_by_file(drafts, &piece.path) } else { drafts })
+        Ok(if piece.named_by_file { named_by_file(recordings, &piece.path) } else { recordings })
     })?;
     let place = || pieces.first().map(Piece::name).unwrap_or_default();
     let nothing = |what: &str| ReadError::Empty(Fault::new(what, place(), "recordings with movements"));
-    let mut drafts = joined.ok_or_else(|| nothing("no file was given"))?;
-    if let Some(pattern) = drafts.unknown.patterns.first() {
-        return Err(roles::no_column(pattern, &drafts.unknown.names, &format!("--ignore, {}", place())));
+    let mut recordings = joined.ok_or_else(|| nothing("no file was given"))?;
+    if let Some(pattern) = recordings.unknown.patterns.first() {
+        return Err(roles::no_column(pattern, &recordings.unknown.names, &format!("--ignore, {}", place())));
     }
-    clean(&mut drafts, channels, options)?;
-    if drafts.channels.is_empty() {
+    clean(&mut recordings, channels, options)?;
+    if recordings.channels.is_empty() {
         return Err(nothing("there is no state of one number or more"));
     }
-    if drafts.episodes.iter().all(|raw| raw.len() < 2) {
+    if recordings.episodes.iter().all(|raw| raw.len() < 2) {
         return Err(nothing("there is no episode of two samples or more"));
     }
-    let context = if options.context.is_empty() { Vec::new() } else { std::mem::take(&mut drafts.context) };
+    let context = if options.context.is_empty() { Vec::new() } else { std::mem::take(&mut recordings.context) };
     // A column that never changes has been dropped from the channels.
-    let names = drafts.names();
+    let names = recordings.names();
     if let Some(constant) = context.iter().find(|name| !names.contains(name)) {
         return Err(roles::no_column(constant, &names, "--context, among the channels that were read"));
     }
-    Ok((drafts.checked(), context))
+    Ok((recordings.checked(), context))
 }
 
 /// Reads with the library of an optional feature, which may panic on damaged files.
@@ -128,13 +128,14 @@ macro_rules! with_feature {
     }};
 }
 
-fn drafts(path: &Path, options: &ReadOptions, progress: &mut dyn FnMut(u64)) -> Result<RawRecordings, ReadError> {
+/// Reads a file or a folder.
+fn whole(path: &Path, options: &ReadOptions, progress: &mut dyn FnMut(u64)) -> Result<RawRecordings, ReadError> {
     let name = name_of(path);
     if path.is_dir() {
         return match sniff::folder(path, &name)? {
             Folder::LeRobot => {
-                let drafts = with_feature!("parquet", &name, crate::rows::lerobot::read(path, options, progress));
-                drafts.map(|drafts| with_idle(drafts, Format::LeRobot, options))
+                let recordings = with_feature!("parquet", &name, crate::rows::lerobot::read(path, options, progress));
+                recordings.map(|recordings| with_idle(recordings, Format::LeRobot, options))
             }
             Folder::Files => folder(path, &name, options, progress),
         };
@@ -142,7 +143,7 @@ fn drafts(path: &Path, options: &ReadOptions, progress: &mut dyn FnMut(u64)) -> 
     let mut input = Input::new(path, options)?;
     let format = sniff::format(&input)?;
     input.columns_first = format == Format::Mat;
-    let drafts = match format {
+    let recordings = match format {
         Format::Csv | Format::Tsv => delimited::read(&input, None, progress),
         Format::Jsonl => json_lines::read(&input, None, progress),
         Format::Npy => npy::read(&input, progress),
@@ -158,17 +159,17 @@ fn drafts(path: &Path, options: &ReadOptions, progress: &mut dyn FnMut(u64)) -> 
         Format::Mcap => with_feature!("mcap", &name, crate::rows::mcap::read(&input, progress)),
         Format::Mat => with_feature!("mat", &name, crate::arrays::mat::read(&input, progress)),
     };
-    drafts.map(|drafts| with_idle(drafts, format, options))
+    recordings.map(|recordings| with_idle(recordings, format, options))
 }
 
 /// Adds a finding for every option that has no effect in this format.
-fn with_idle(mut drafts: RawRecordings, format: Format, options: &ReadOptions) -> RawRecordings {
+fn with_idle(mut recordings: RawRecordings, format: Format, options: &ReadOptions) -> RawRecordings {
     let remark = |(flag, of): (&str, &str)| {
         let what = format!("{flag} has no effect on {}", sniff::name(format));
         raw::remark(what, format!("no {flag}: it is for {of}"))
     };
-    drafts.findings.extend(options.idle(format).map(remark));
-    drafts
+    recordings.findings.extend(options.idle(format).map(remark));
+    recordings
 }
 
 /// Reads the records of a part of a text.
@@ -179,16 +180,16 @@ fn part(
     progress: &mut dyn FnMut(u64),
 ) -> Result<RawRecordings, ReadError> {
     let input = Input::new(path, options)?;
-    let drafts = sniff::format(&input).and_then(|format| {
-        let drafts = match format {
+    let recordings = sniff::format(&input).and_then(|format| {
+        let recordings = match format {
             Format::Jsonl => json_lines::read(&input, Some(span), progress),
             _ => delimited::read(&input, Some(span), progress),
         };
-        drafts.map(|drafts| with_idle(drafts, format, options))
+        recordings.map(|recordings| with_idle(recordings, format, options))
     });
     // If the file has changed, its contents are of no use.
     span.require_unchanged(path)?;
-    drafts
+    recordings
 }
 
 /// Cuts a file into pieces of whole movements, each of at most `most` bytes unless a movement has more. Possible for some CSV, TSV and
@@ -233,7 +234,7 @@ fn folder(
     progress: &mut dyn FnMut(u64),
 ) -> Result<RawRecordings, ReadError> {
     let files = listed(path, name)?;
-    let joined = joined(&files, |file| Ok(named_by_file(drafts(file, options, progress)?, file)))?;
+    let joined = joined(&files, |file| Ok(named_by_file(whole(file, options, progress)?, file)))?;
     joined.ok_or_else(|| {
         let what = "there is no file of a known format in the folder";
         ReadError::Empty(Fault::new(what, name, "a folder with .csv, .npz, .jsonl, .mcap … files, a movement each"))
@@ -264,10 +265,10 @@ pub fn files_of(path: &Path) -> Result<Vec<PathBuf>, ReadError> {
 }
 
 /// Prefixes the names of episodes with that of their file, because episodes are numbered within each of several files.
-fn named_by_file(mut drafts: RawRecordings, file: &Path) -> RawRecordings {
+fn named_by_file(mut recordings: RawRecordings, file: &Path) -> RawRecordings {
     let stem = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-    for draft in drafts.episodes.iter_mut().filter(|draft| draft.name != stem) {
-        draft.name = format!("{stem}/{}", draft.name);
+    for raw in recordings.episodes.iter_mut().filter(|raw| raw.name != stem) {
+        raw.name = format!("{stem}/{}", raw.name);
     }
-    drafts
+    recordings
 }

@@ -15,23 +15,24 @@ use crate::rows::roles::shortened;
 use crate::rows::stamps::Stamp;
 use crate::{Fault, ReadError};
 
-pub(crate) fn drafts(
+pub(crate) fn recordings(
     input: &Input<'_>,
     described: &[ArraySpec],
     load: &mut Load<'_>,
 ) -> Result<RawRecordings, ReadError> {
     if let Some(demos) = families(described, input.options) {
-        return GroupedArrays { input, described, demos, step: None, named_by_array: false }.drafts(load);
+        return GroupedArrays { input, described, demos, step: None, named_by_array: false }.recordings(load);
     }
     let fields = &assign(described, input.options, &input.name)?;
-    Columns(ArrayReader { input, described, demo: None, arrays: described, fields, named_by_array: false }).drafts(load)
+    Columns(ArrayReader { input, described, demo: None, arrays: described, fields, named_by_array: false })
+        .recordings(load)
 }
 
 /// The arrays of a file, each of which holds all episodes.
 struct Columns<'a>(ArrayReader<'a>);
 
 impl Columns<'_> {
-    fn drafts(&self, load: &mut Load<'_>) -> Result<RawRecordings, ReadError> {
+    fn recordings(&self, load: &mut Load<'_>) -> Result<RawRecordings, ReadError> {
         let ArrayReader { input, fields, described, .. } = self.0;
         // The short arrays are read first, because they may lead to an error.
         let step = match (period(input.options)?, fields.time) {

@@ -21,7 +21,7 @@ pub(crate) struct GroupedArrays<'a> {
 }
 
 impl GroupedArrays<'_> {
-    pub(crate) fn drafts(&self, load: &mut Load<'_>) -> Result<RawRecordings, ReadError> {
+    pub(crate) fn recordings(&self, load: &mut Load<'_>) -> Result<RawRecordings, ReadError> {
         let Self { input, described, named_by_array, .. } = *self;
         let file = &input.name[..];
         let Some(first) = self.demos.first() else {

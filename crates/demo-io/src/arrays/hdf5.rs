@@ -29,11 +29,11 @@ pub(crate) fn read(input: &Input<'_>, progress: &mut dyn FnMut(u64)) -> Result<R
     }
     if demos.is_empty() && input.options.filter.is_none() {
         let described = side_by_side(&mut tree, &root, data.as_ref())?;
-        return flat::drafts(input, &described, &mut |index| tree.load(index));
+        return flat::recordings(input, &described, &mut |index| tree.load(index));
     }
     let described: Vec<ArraySpec> = tree.described();
     let step = step(&root, parent, input)?;
-    GroupedArrays { input, described: &described, demos, step, named_by_array: true }.drafts(&mut |index| {
+    GroupedArrays { input, described: &described, demos, step, named_by_array: true }.recordings(&mut |index| {
         let data = tree.load(index)?;
         progress(data.len() as u64 * 8);
         Ok(data)

@@ -36,9 +36,10 @@ pub(crate) fn read(input: &Input<'_>, progress: &mut dyn FnMut(u64)) -> Result<R
                 let own: Vec<String> = demo.fields.iter().map(|(name, _)| name.clone()).collect();
                 demo.fields.extend(shared.iter().filter(|(name, _)| !own.contains(name)).cloned());
             }
-            GroupedArrays { input, described: &described, demos, step: None, named_by_array: false }.drafts(&mut load)
+            GroupedArrays { input, described: &described, demos, step: None, named_by_array: false }
+                .recordings(&mut load)
         }
-        None => flat::drafts(input, &described, &mut load),
+        None => flat::recordings(input, &described, &mut load),
     }
 }
 

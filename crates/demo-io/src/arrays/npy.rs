@@ -22,7 +22,7 @@ pub(crate) fn read(input: &Input<'_>, progress: &mut dyn FnMut(u64)) -> Result<R
     let header = Header::read(&mut file, &input.name)?;
     let described = [header.described("state".to_owned())];
     let left = input.len.saturating_sub(header.len);
-    flat::drafts(input, &described, &mut |_| {
+    flat::recordings(input, &described, &mut |_| {
         progress(input.len);
         header.data(&mut file, left, &input.name, input)
     })

@@ -54,7 +54,7 @@ pub(crate) fn read(input: &Input<'_>, progress: &mut dyn FnMut(u64)) -> Result<R
         Ok(header.described(entry.name.clone()))
     };
     let described = entries.iter().map(described).collect::<Result<Vec<_>, _>>()?;
-    flat::drafts(input, &described, &mut |index| {
+    flat::recordings(input, &described, &mut |index| {
         let entry = &entries[index];
         progress(entry.wayfinder.compressed_size_hint());
         opened(&archive, entry, input, |mut reader| {

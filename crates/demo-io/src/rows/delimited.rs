@@ -44,16 +44,16 @@ pub(crate) fn read(
             _ => error,
         })?;
     }
-    let mut drafts = table.finish();
+    let mut recordings = table.finish();
     if is_idle {
         let what = "--samples-are columns has no effect on a table with a header";
-        drafts.findings.push(remark(what, "no --samples-are, or a file whose lines are channels without a header"));
+        recordings.findings.push(remark(what, "no --samples-are, or a file whose lines are channels without a header"));
     }
     if dialect.decimal_comma {
         let what = format!("decimal commas of {} were read as points", input.name);
-        drafts.findings.push(remark(what, "--decimal . if they are something else"));
+        recordings.findings.push(remark(what, "--decimal . if they are something else"));
     }
-    Ok(drafts)
+    Ok(recordings)
 }
 
 /// Reads text without names in which each line holds a channel: an array whose samples are columns.
@@ -87,5 +87,5 @@ fn transposed(input: &Input<'_>, beginning: Beginning<'_>) -> Result<RawRecordin
     }
     let shape = vec![lines, samples];
     let described = [ArraySpec { name: input.stem.clone(), shape, kind: Kind::Number("float64") }];
-    flat::drafts(input, &described, &mut |_| Ok(Data::Numbers(numbers.clone())))
+    flat::recordings(input, &described, &mut |_| Ok(Data::Numbers(numbers.clone())))
 }

@@ -28,14 +28,14 @@ pub(crate) fn read(
     let mut files = parquet_files(&path.join("data"), &name)?;
     files.sort_by(|a, b| natural::compare(&a.to_string_lossy(), &b.to_string_lossy()));
     let joined = joined(&files, |file| parquet::read(&Input::new(file, options)?, &described, progress))?;
-    let drafts = joined.ok_or_else(|| {
+    let recordings = joined.ok_or_else(|| {
         let remedy = "hf download REPOSITORY --repo-type dataset";
         ReadError::MissingFile(Fault::new("there is no Parquet file in data/", &name, remedy))
     })?;
     if options.episode.is_none() {
-        info.refuse_missing(path, &name, &drafts)?;
+        info.refuse_missing(path, &name, &recordings)?;
     }
-    Ok(drafts)
+    Ok(recordings)
 }
 
 /// `meta/info.json`.
@@ -75,8 +75,8 @@ impl Info {
     }
 
     /// Refuses a folder that lacks episodes that `meta/` lists.
-    fn refuse_missing(&self, path: &Path, name: &str, drafts: &RawRecordings) -> Result<(), ReadError> {
-        let found: BTreeSet<&str> = drafts.episodes.iter().map(|draft| &draft.name[..]).collect();
+    fn refuse_missing(&self, path: &Path, name: &str, recordings: &RawRecordings) -> Result<(), ReadError> {
+        let found: BTreeSet<&str> = recordings.episodes.iter().map(|raw| &raw.name[..]).collect();
         let listed = read_bytes(&path.join("meta/episodes.jsonl"), META).unwrap_or_default();
         let listed = String::from_utf8(listed).unwrap_or_default();
         let mut expected: Vec<u64> = listed

@@ -33,13 +33,13 @@ pub(crate) fn read(input: &Input<'_>, progress: &mut dyn FnMut(u64)) -> Result<R
         metadata: BTreeMap::new(),
     };
     let whole = records::each(input, progress, |record| bag.add(record))?;
-    let mut drafts = bag.finish()?;
+    let mut recordings = bag.finish()?;
     if !whole {
         let why = "in the middle of a record, as if its recorder was killed; what is whole was read";
         let what = format!("{} ends {why}", input.name);
-        drafts.findings.push(remark(what, "mcap recover FILE repairs it"));
+        recordings.findings.push(remark(what, "mcap recover FILE repairs it"));
     }
-    Ok(drafts)
+    Ok(recordings)
 }
 
 /// State of reading a bag.

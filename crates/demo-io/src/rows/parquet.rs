@@ -73,11 +73,11 @@ pub(crate) fn read(
     if row == 0 {
         return Err(ReadError::Empty(Fault::new("there is no row", &input.name, "a file with samples")));
     }
-    let mut drafts = table.finish();
-    drafts.drop_constant &= !listed;
-    drafts.findings.extend(checked.and_then(|stamps| stamps.finding));
-    rename(&mut drafts, described);
-    Ok(drafts)
+    let mut recordings = table.finish();
+    recordings.drop_constant &= !listed;
+    recordings.findings.extend(checked.and_then(|stamps| stamps.finding));
+    rename(&mut recordings, described);
+    Ok(recordings)
 }
 
 /// Leaves of the schema, and the columns into which they expand.
@@ -187,13 +187,13 @@ impl Columns {
 }
 
 /// Renames channels to the names that another file gives.
-fn rename(drafts: &mut RawRecordings, described: &Described) {
+fn rename(recordings: &mut RawRecordings, described: &Described) {
     let given: HashMap<String, &String> = described
         .elements
         .iter()
         .flat_map(|(list, names)| names.iter().enumerate().map(move |(at, name)| (format!("{list}_{at}"), name)))
         .collect();
-    for channel in &mut drafts.channels {
+    for channel in &mut recordings.channels {
         if let Some(name) = given.get(&channel.name) {
             channel.name = (*name).clone();
         }

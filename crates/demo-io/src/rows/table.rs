@@ -250,13 +250,13 @@ impl Table {
             channels.map(|name| Channel { name: name.to_owned(), unit: unit(name).map(str::to_owned) }).collect();
         let ignored: Vec<&str> = self.roles.ignored.iter().map(name).collect();
         let mut findings: Vec<_> = unused("columns", &ignored, &self.elsewhere).into_iter().collect();
-        let switches = |episode: &RawEpisode| episode.constraint.as_ref().is_some_and(|labels| labels.switches() > 0);
+        let switches = |raw: &RawEpisode| raw.constraint.as_ref().is_some_and(|labels| labels.switches() > 0);
         if !self.switching && self.episodes.iter().any(switches) {
-            self.episodes.iter_mut().filter(|episode| switches(episode)).for_each(|episode| episode.constraint = None);
+            self.episodes.iter_mut().filter(|raw| switches(raw)).for_each(|raw| raw.constraint = None);
             let column = self.roles.constraint.map(|column| self.names[column].as_str()).unwrap_or_default();
             findings.extend(unused("labels of constraints that change within an episode are", &[column], &[]));
         }
-        let differ = |episode: &RawEpisode| episode.constraint != self.episodes[0].constraint;
+        let differ = |raw: &RawEpisode| raw.constraint != self.episodes[0].constraint;
         let labels_vary =
             self.roles.constraint.is_some_and(|column| says(&self.names[column])) || self.episodes.iter().any(differ);
         for (raw, clock) in self.episodes.iter_mut().zip(self.clocks) {

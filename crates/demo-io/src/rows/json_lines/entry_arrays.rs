@@ -65,7 +65,7 @@ impl<'a> EntryArrays<'a> {
     pub(super) fn finish(self) -> Result<RawRecordings, ReadError> {
         let Self { input, described, data, demos, .. } = self;
         let arrays = GroupedArrays { input, described: &described, demos, step: None, named_by_array: false };
-        arrays.drafts(&mut |index| Ok(data[index].clone()))
+        arrays.recordings(&mut |index| Ok(data[index].clone()))
     }
 }
 

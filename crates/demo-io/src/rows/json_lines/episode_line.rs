@@ -116,7 +116,7 @@ impl<'a> EpisodeLines<'a> {
         let names: Vec<String> = channels.iter().map(|channel| channel.name.clone()).collect();
         let unknown = Unknown::of(&ignore, &names);
         let asked = Asked { state, velocity, context, ignore, time: None };
-        let drafts = |channels, findings, episodes, context| RawRecordings {
+        let recordings = |channels, findings, episodes, context| RawRecordings {
             channels,
             episodes,
             findings,
@@ -126,7 +126,7 @@ impl<'a> EpisodeLines<'a> {
             context,
         };
         if asked.is_empty() {
-            return Ok(drafts(channels, Vec::new(), episodes, Vec::new()));
+            return Ok(recordings(channels, Vec::new(), episodes, Vec::new()));
         }
         let chosen = Chosen::of(&names, &asked, &[], &self.input.name)?;
         for raw in &mut episodes {
@@ -138,7 +138,7 @@ impl<'a> EpisodeLines<'a> {
         let channels = chosen.channels().map(|column| channels[column].clone()).collect();
         let findings = unused("columns", &left, &self.input.options.elsewhere).into_iter().collect();
         let context = chosen.context.iter().map(|&column| names[column].clone()).collect();
-        Ok(drafts(channels, findings, episodes, context))
+        Ok(recordings(channels, findings, episodes, context))
     }
 }
 

@@ -200,7 +200,7 @@ impl<'a> Topic<'a> {
             let stamps = stamps.iter().map(|&stamp| (Stamp::whole(stamp), None));
             seconds_since_first(stamps, "", None, &mut Some(TimeUnit::Nanoseconds))
         };
-        let draft = RawEpisode {
+        let raw = RawEpisode {
             name: self.input.stem.clone(),
             file: self.input.name.clone(),
             rows: set.numbers.iter().copied().collect(),
@@ -217,7 +217,7 @@ impl<'a> Topic<'a> {
         let names: Vec<&str> = channels.iter().map(|channel| &channel.name[..]).collect();
         let context = named(&self.input.options.context, &names, &self.input.name)?;
         let context = context.into_iter().map(|at| names[at].to_owned()).collect();
-        let episodes = episodes(draft, metadata);
+        let episodes = episodes(raw, metadata);
         Ok(RawRecordings { channels, episodes, findings, word: "message", drop_constant: false, unknown, context })
     }
 
