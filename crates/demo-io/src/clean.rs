@@ -281,7 +281,7 @@ pub(crate) fn rounded(value: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::raw::{Rows, Unknown};
+    use crate::raw::{Records, Unknown};
 
     /// Two episodes of a state and an environment, with velocities.
     fn recordings(environment: [[f64; 2]; 2]) -> RawRecordings {
@@ -289,7 +289,7 @@ mod tests {
         let episode = |(k, values): (usize, &[f64; 2])| RawEpisode {
             name: k.to_string(),
             file: String::new(),
-            rows: Rows::consecutive(0, 2),
+            records: Records::consecutive(0, 2),
             times: vec![0.0, 0.1],
             positions: vec![1.0, values[0], 2.0, values[1]],
             velocities: vec![10.0, 0.0, 10.0, 0.0],

@@ -2,7 +2,7 @@
 
 use crate::names::selection::{flags, unmatched};
 use crate::rows::stamps::Stamp;
-use motion::{Channel, Episode, Finding, Labels, Recordings, Source, Times, Verdict};
+use motion::{Channel, Episode, Finding, Labels, RecordRange, Recordings, Source, Times, Verdict};
 use nalgebra::DMatrix;
 
 use crate::error::in_one_line;
@@ -14,7 +14,7 @@ pub(crate) struct RawRecordings {
     pub(crate) channels: Vec<Channel>,
     pub(crate) episodes: Vec<RawEpisode>,
     pub(crate) findings: Vec<Finding>,
-    /// The unit that [`Rows`] counts: "line", "row", "message", "sample".
+    /// The unit that [`Records`] counts: "line", "row", "message", "sample".
     pub(crate) word: &'static str,
     /// Whether the state was detected rather than named, so that columns that never change are dropped.
     pub(crate) drop_constant: bool,
@@ -46,7 +46,7 @@ pub(crate) struct RawEpisode {
     pub(crate) name: String,
     /// File name without folders.
     pub(crate) file: String,
-    pub(crate) rows: Rows,
+    pub(crate) records: Records,
     /// (N), in seconds, with any origin.
     pub(crate) times: Vec<f64>,
     /// Sample after sample, n N numbers; a missing one is NaN.
@@ -72,7 +72,7 @@ impl RawRecordings {
         let n = channels.len();
         let matrix = |numbers: Vec<f64>| DMatrix::from_vec(n, numbers.len().checked_div(n).unwrap_or(0), numbers);
         let episodes = episodes.into_iter().map(|raw| Episode {
-            source: Source { file: raw.file, rows: raw.rows.ends(word) },
+            source: Source { file: raw.file, records: raw.records.ends(word) },
             name: raw.name,
             times: Times::Stamped(raw.times),
             velocities: (!raw.velocities.is_empty()).then(|| matrix(raw.velocities)),
@@ -97,32 +97,32 @@ impl RawEpisode {
             samples.clone().flat_map(|sample| &numbers[sample * n..(sample + 1) * n]).copied().collect()
         };
         let (positions, velocities) = (columns(&self.positions), columns(&self.velocities));
-        let rows = samples.clone().map(|sample| self.rows.at(sample)).collect();
+        let records = samples.clone().map(|sample| self.records.at(sample)).collect();
         let constraint = self.constraint.as_ref().and_then(|labels| labels.chosen(samples.clone()));
         let times = samples.map(|sample| self.times[sample]).collect();
         let (name, file) = (self.name.clone(), self.file.clone());
-        RawEpisode { name, file, rows, times, positions, velocities, constraint }
+        RawEpisode { name, file, records, times, positions, velocities, constraint }
     }
 
     /// The place of `sample` in the file: "demos.csv, line 17 (episode 1)".
     pub(crate) fn place(&self, sample: usize, word: &str) -> String {
-        let Self { name, file, rows, .. } = self;
+        let Self { name, file, records, .. } = self;
         match word {
-            "sample" => format!("{file}, episode {name}, sample {}", rows.at(sample)),
-            _ => format!("{file}, {word} {} (episode {name})", rows.at(sample)),
+            "sample" => format!("{file}, episode {name}, sample {}", records.at(sample)),
+            _ => format!("{file}, {word} {} (episode {name})", records.at(sample)),
         }
     }
 }
 
 /// The place of each sample in the file, as runs of consecutive places: a few bytes for most episodes.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub(crate) struct Rows {
+pub(crate) struct Records {
     /// The first sample of each run and its place.
     runs: Vec<(usize, u64)>,
     len: usize,
 }
 
-impl Rows {
+impl Records {
     /// `len` places from `first`.
     pub(crate) fn consecutive(first: u64, len: usize) -> Self {
         Self { runs: vec![(0, first)], len }
@@ -145,16 +145,16 @@ impl Rows {
         self.runs.get(run.wrapping_sub(1)).map_or(0, |&(first, place)| place + (sample - first) as u64)
     }
 
-    pub(crate) fn ends(&self, word: &'static str) -> Option<motion::Rows> {
-        (self.len > 0).then(|| motion::Rows { word, first: self.at(0), last: self.at(self.len - 1) })
+    pub(crate) fn ends(&self, word: &'static str) -> Option<RecordRange> {
+        (self.len > 0).then(|| RecordRange { word, first: self.at(0), last: self.at(self.len - 1) })
     }
 }
 
-impl FromIterator<u64> for Rows {
+impl FromIterator<u64> for Records {
     fn from_iter<I: IntoIterator<Item = u64>>(places: I) -> Self {
-        let mut rows = Rows::default();
-        places.into_iter().for_each(|place| rows.push(place));
-        rows
+        let mut records = Records::default();
+        places.into_iter().for_each(|place| records.push(place));
+        records
     }
 }
 
@@ -264,14 +264,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn rows_are_runs() {
-        let rows: Rows = [2, 3, 4, 9, 10, 7].into_iter().collect();
-        assert_eq!(rows.runs.len(), 3);
-        assert_eq!((0..6).map(|sample| rows.at(sample)).collect::<Vec<_>>(), [2, 3, 4, 9, 10, 7]);
-        let ends = |first, last| Some(motion::Rows { word: "line", first, last });
-        assert_eq!(rows.ends("line"), ends(2, 7));
-        assert_eq!([1, 3].into_iter().map(|sample| rows.at(sample)).collect::<Rows>().ends("line"), ends(3, 9));
-        assert_eq!(Rows::default().ends("line"), None);
+    fn records_are_runs() {
+        let records: Records = [2, 3, 4, 9, 10, 7].into_iter().collect();
+        assert_eq!(records.runs.len(), 3);
+        assert_eq!((0..6).map(|sample| records.at(sample)).collect::<Vec<_>>(), [2, 3, 4, 9, 10, 7]);
+        let ends = |first, last| Some(RecordRange { word: "line", first, last });
+        assert_eq!(records.ends("line"), ends(2, 7));
+        assert_eq!([1, 3].into_iter().map(|sample| records.at(sample)).collect::<Records>().ends("line"), ends(3, 9));
+        assert_eq!(Records::default().ends("line"), None);
     }
 
     #[test]

@@ -22,7 +22,7 @@ use proptest::prelude::*;
 fn recordings(samples: usize) -> Recordings {
     let episode = |number: usize| Episode {
         name: format!("take {number}"),
-        source: Source { file: "made".to_owned(), rows: None },
+        source: Source { file: "made".to_owned(), records: None },
         times: (0..samples).map(|sample| sample as f64 * 0.02).collect(),
         positions: DMatrix::from_fn(3, samples, |row, column| (row as f64 + (number * column) as f64 * 0.01).sin()),
         velocities: Some(DMatrix::from_fn(3, samples, |row, column| (row as f64 - column as f64 * 0.02).cos())),

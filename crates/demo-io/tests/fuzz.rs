@@ -36,7 +36,7 @@ fn recordings() -> Recordings {
     };
     let episode = |k: usize| Episode {
         name: format!("take {k}"),
-        source: Source { file: String::new(), rows: None },
+        source: Source { file: String::new(), records: None },
         times: (0..8).map(|sample| f64::from(sample) * 0.05).collect(),
         positions: numbers(k, 0.0),
         velocities: Some(numbers(k, 1.0)),

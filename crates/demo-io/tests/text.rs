@@ -6,7 +6,7 @@ mod common;
 
 use common::{Files, lengths, names, parsed, read_with, refused, said};
 use demo_io::{Nan, ReadOptions, SamplesAre};
-use motion::Rows;
+use motion::RecordRange;
 use proptest::prelude::*;
 use std::fmt::Write as _;
 
@@ -83,7 +83,7 @@ fn quotes_blank_lines_and_comments_are_understood() {
     let found = parsed("a.csv", text, &plain()).unwrap();
     assert_eq!(names(&found), ["x, left", "y"]);
     assert_eq!(lengths(&found), [3]);
-    assert_eq!(found.episodes[0].source.rows, Some(Rows { word: "line", first: 2, last: 7 }));
+    assert_eq!(found.episodes[0].source.records, Some(RecordRange { word: "line", first: 2, last: 7 }));
 }
 
 #[test]

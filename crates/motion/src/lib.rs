@@ -89,7 +89,7 @@ pub use learner::{Certainty, LearnError, Learner, LearntPolicy};
 pub use mean::{mean_and_error, spread, standard_deviation};
 pub use median::{median, upper_median};
 pub use policy::{NegativeGradient, Policy, Potential};
-pub use recordings::{Channel, Episode, Recordings, Rows, Source, is_called_context};
+pub use recordings::{Channel, Episode, RecordRange, Recordings, Source, is_called_context};
 pub use samples::{Labels, SampleIndex, SampleSet};
 pub use scaled::scaled;
 pub use times::{TimeUnit, Times, whole_step};

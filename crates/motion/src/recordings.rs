@@ -57,12 +57,12 @@ pub struct Source {
     /// Name of the file, without folders; empty if there is none.
     pub file: String,
     /// Position of its samples in the file; `None` if it is not meaningful.
-    pub rows: Option<Rows>,
+    pub records: Option<RecordRange>,
 }
 
-/// Position of samples in a file.
+/// The records of a file that hold an episode's samples.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Rows {
+pub struct RecordRange {
     /// The unit that is counted: "line", "row", "message", "sample".
     pub word: &'static str,
     /// The first sample's, counted from 1 as in the format.
@@ -135,10 +135,10 @@ impl Episode {
     /// Samples `from` to `to`, excluding the last.
     #[must_use]
     pub fn part(&self, from: usize, to: usize) -> Episode {
-        let at = |sample: usize| self.row(sample).map(|(_, row)| row);
-        let whole = self.source.rows.filter(|_| from < to);
-        let rows = whole.and_then(|rows| Some(Rows { first: at(from)?, last: at(to - 1)?, ..rows }));
-        let source = Source { file: self.source.file.clone(), rows };
+        let at = |sample: usize| self.record(sample).map(|(_, record)| record);
+        let whole = self.source.records.filter(|_| from < to);
+        let records = whole.and_then(|whole| Some(RecordRange { first: at(from)?, last: at(to - 1)?, ..whole }));
+        let source = Source { file: self.source.file.clone(), records };
         let constraint = self.constraint.as_ref().and_then(|labels| labels.chosen(from..to));
         let part = self.with(self.times.part(from..to), source, |values| values.columns(from, to - from).into_owned());
         Episode { constraint, ..part }
@@ -176,18 +176,18 @@ impl Episode {
     /// The place of a sample in its file: "demos.csv, line 17 (episode 1)".
     pub fn place(&self, sample: usize) -> String {
         let (name, file) = (&self.name, &self.source.file);
-        match self.row(sample) {
-            Some((word, row)) if word != "sample" => format!("{file}, {word} {row} (episode {name})"),
+        match self.record(sample) {
+            Some((word, record)) if word != "sample" => format!("{file}, {word} {record} (episode {name})"),
             _ if file.is_empty() => format!("episode {name}, sample {sample}"),
             _ => format!("{file}, episode {name}, sample {sample}"),
         }
     }
 
-    /// The row of a sample with its unit, if rows are consecutive.
-    fn row(&self, sample: usize) -> Option<(&'static str, u64)> {
-        let rows = self.source.rows?;
-        (rows.last.checked_sub(rows.first)? + 1 == self.n_samples() as u64)
-            .then(|| (rows.word, rows.first + sample as u64))
+    /// The record of a sample with its unit, if records are consecutive.
+    fn record(&self, sample: usize) -> Option<(&'static str, u64)> {
+        let records = self.source.records?;
+        (records.last.checked_sub(records.first)? + 1 == self.n_samples() as u64)
+            .then(|| (records.word, records.first + sample as u64))
     }
 }
 

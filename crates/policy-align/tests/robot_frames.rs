@@ -29,7 +29,7 @@ const ROBOT: &str = r#"<robot name="press">
 fn recordings(channels: &[(&str, Option<&str>)], episodes: &[DMatrix<f64>]) -> Recordings {
     let episode = |(number, positions): (usize, &DMatrix<f64>)| Episode {
         name: format!("take {number}"),
-        source: Source { file: "made".to_owned(), rows: None },
+        source: Source { file: "made".to_owned(), records: None },
         times: (0..positions.ncols()).map(|sample| sample as f64 * 0.1).collect(),
         positions: positions.clone(),
         velocities: None,

@@ -21,7 +21,7 @@ fn recordings() -> Recordings {
         let value = |axis: usize, i: usize| start[axis] * (-rate[axis] * STEP * i as f64).exp();
         Episode {
             name: format!("e{k}"),
-            source: Source { file: "made".to_owned(), rows: None },
+            source: Source { file: "made".to_owned(), records: None },
             times: (0..SAMPLES).map(|i| 7.0 + STEP * i as f64).collect(),
             positions: DMatrix::from_fn(2, SAMPLES, value),
             velocities: Some(DMatrix::from_fn(2, SAMPLES, |axis, i| -rate[axis] * value(axis, i))),

@@ -40,7 +40,7 @@ impl<'a> BlockSearch<'a> {
     pub(crate) fn run(&mut self, other: &Tiles) -> f64 {
         self.of_rows.reset(self.one.n_samples);
         self.of_columns.reset(other.n_samples);
-        self.one.arch.dispatch(Block { search: self, other })
+        self.one.arch.dispatch(Pair { search: self, other })
     }
 
     /// Finds the segments of the other trajectory within the search radius of one of this, as ranges of adjacent ones.
@@ -58,15 +58,15 @@ impl<'a> BlockSearch<'a> {
 }
 
 /// One pair of trajectories: rows are samples of this one, vector lanes samples of the other.
-struct Block<'s, 'a> {
+struct Pair<'s, 'a> {
     search: &'s mut BlockSearch<'a>,
     other: &'s Tiles,
 }
 
-impl WithSimd for Block<'_, '_> {
+impl WithSimd for Pair<'_, '_> {
     type Output = f64;
 
-    /// The smallest squared distance of the block.
+    /// The smallest squared distance of the pair.
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> f64 {
         // Few dimensions stay in registers; for many, the loop overhead no longer matters.
@@ -80,10 +80,10 @@ impl WithSimd for Block<'_, '_> {
     }
 }
 
-impl Block<'_, '_> {
+impl Pair<'_, '_> {
     #[inline(always)]
     fn run<S: Simd>(self, simd: S, squared_distances: impl Fn(&[[f64; ROWS]], &[S::f64s]) -> [S::f64s; ROWS]) -> f64 {
-        let Block { search, other } = self;
+        let Pair { search, other } = self;
         let (dim, n_rows) = (other.dim, search.one.n_samples);
         let tiles = S::as_simd_f64s(&other.columns).0;
         let count: Lanes = std::array::from_fn(|lane| lane as f64);

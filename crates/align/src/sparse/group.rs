@@ -1,7 +1,7 @@
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 
-use super::shared_samples::{Block, Row, SharedSamples};
+use super::shared_samples::{Row, SharedSamples, SparseRows};
 use crate::offsets::compensated::CompensatedSum;
 
 /// Sums over rows are computed in this many parts, each in the order of its rows, so that the bits do not depend on the
@@ -65,7 +65,7 @@ impl<'a> Group<'a> {
         parts.0.par_iter_mut().zip(chunks).for_each(|(sum, blocks)| {
             sum.clear();
             sum.resize(total.len(), 0.0);
-            for row in blocks.iter().flat_map(Block::rows) {
+            for row in blocks.iter().flat_map(SparseRows::rows) {
                 add(row, sum);
             }
         });
@@ -138,7 +138,7 @@ impl<'a> Group<'a> {
         let blocks = &self.samples.blocks;
         let parts = blocks.par_chunks(blocks.len().div_ceil(PARTS)).map(|blocks| {
             let mut sum = vec![CompensatedSum::default(); offsets.len()];
-            for row in blocks.iter().flat_map(Block::rows) {
+            for row in blocks.iter().flat_map(SparseRows::rows) {
                 self.add_flows(row, offsets, &mut sum);
             }
             sum

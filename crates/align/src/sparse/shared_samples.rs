@@ -17,13 +17,13 @@ const PER_ENTRY: u64 = 4 + 8 + 8;
 #[derive(Debug)]
 pub(crate) struct SharedSamples {
     /// In the order of the tree, so that neighbours are together.
-    pub(crate) blocks: Vec<Block>,
+    pub(crate) blocks: Vec<SparseRows>,
     pub(crate) n_trajectories: usize,
 }
 
 /// The rows of neighbouring samples, one after the other.
 #[derive(Debug, Default)]
-pub(crate) struct Block {
+pub(crate) struct SparseRows {
     /// For each row, its own trajectory o.
     owners: Vec<u32>,
     /// For each row, q_om.
@@ -54,7 +54,7 @@ impl SharedSamples {
     pub(crate) fn new(tree: &SampleTree, potentials: &[Vec<f64>], sigma_squared: f64, squared_radius: f64) -> Self {
         let blocks = (0..tree.n_leaves().div_ceil(LEAVES)).into_par_iter().map(|block| {
             let leaves = block * LEAVES..tree.n_leaves().min((block + 1) * LEAVES);
-            let mut rows = Block::default();
+            let mut rows = SparseRows::default();
             let mut found = Vec::new();
             for leaf in leaves {
                 tree.neighbours(leaf, squared_radius, &mut found, |place, neighbours| {
@@ -69,7 +69,7 @@ impl SharedSamples {
     }
 
     pub(crate) fn rows(&self) -> impl Iterator<Item = Row<'_>> {
-        self.blocks.iter().flat_map(Block::rows)
+        self.blocks.iter().flat_map(SparseRows::rows)
     }
 
     /// Bytes for `samples` samples, each with `others` other trajectories.
@@ -78,7 +78,7 @@ impl SharedSamples {
     }
 }
 
-impl Block {
+impl SparseRows {
     fn push(&mut self, owner: u32, own: f64, others: &[Neighbour], potentials: &[Vec<f64>], sigma_squared: f64) {
         let first = self.models.len();
         let (mut total, mut counted) = (0.0, false);

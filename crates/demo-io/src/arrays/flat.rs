@@ -10,7 +10,7 @@ use crate::arrays::grouped::GroupedArrays;
 use crate::arrays::layout::{Stack, lengths};
 use crate::arrays::reader::{ArrayReader, ReadState};
 use crate::input::Input;
-use crate::raw::{MOST_EPISODES, RawEpisode, RawRecordings, Rows, even_times, no_time, period, seconds_since_first};
+use crate::raw::{MOST_EPISODES, RawEpisode, RawRecordings, Records, even_times, no_time, period, seconds_since_first};
 use crate::rows::roles::shortened;
 use crate::rows::stamps::Stamp;
 use crate::{Fault, ReadError};
@@ -65,7 +65,7 @@ impl Columns<'_> {
         let episodes = ranges.into_iter().zip(times).enumerate().map(|(index, (samples, times))| RawEpisode {
             name: names.as_ref().map_or_else(|| samples.name.clone(), |names| names[index].clone()),
             file: input.name.clone(),
-            rows: Rows::consecutive(0, samples.rows.len()),
+            records: Records::consecutive(0, samples.rows.len()),
             times,
             positions: samples.of(&state.numbers, state.channels),
             velocities: if velocities.is_empty() { Vec::new() } else { samples.of(&velocities, state.channels) },

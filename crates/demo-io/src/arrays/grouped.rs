@@ -5,7 +5,7 @@ use crate::arrays::demo::Demo;
 use crate::arrays::fields::assign;
 use crate::arrays::reader::{ArrayReader, ReadState};
 use crate::input::Input;
-use crate::raw::{MOST_EPISODES, RawEpisode, RawRecordings, Rows, even_times, no_time, period, seconds_since_first};
+use crate::raw::{MOST_EPISODES, RawEpisode, RawRecordings, Records, even_times, no_time, period, seconds_since_first};
 use crate::rows::stamps::Stamp;
 use crate::{Fault, ReadError};
 
@@ -65,7 +65,7 @@ impl GroupedArrays<'_> {
             episodes.push(RawEpisode {
                 name: demo.name.clone(),
                 file: file.to_owned(),
-                rows: Rows::consecutive(0, state.samples),
+                records: Records::consecutive(0, state.samples),
                 times,
                 positions: state.numbers,
                 velocities,

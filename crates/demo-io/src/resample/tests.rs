@@ -7,7 +7,7 @@ use motion::Source;
 
 fn recordings(times: Vec<f64>, value: impl Fn(f64) -> f64) -> Recordings {
     let positions = DMatrix::from_iterator(1, times.len(), times.iter().map(|&t| value(t)));
-    let source = Source { file: "made".to_owned(), rows: None };
+    let source = Source { file: "made".to_owned(), records: None };
     let velocities = Some(positions.clone());
     let episode = Episode {
         name: "a".to_owned(),

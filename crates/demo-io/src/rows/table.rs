@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use crate::raw::{
-    Clock, MOST_CHANNELS, MOST_EPISODES, RawEpisode, RawRecordings, Rows, Unknown, no_time, period, unused,
+    Clock, MOST_CHANNELS, MOST_EPISODES, RawEpisode, RawRecordings, Records, Unknown, no_time, period, unused,
 };
 use crate::rows::roles::{Column, Roles, assign, shortened, unit};
 use crate::rows::stamps::Stamp;
@@ -147,7 +147,7 @@ impl Table {
         }
         self.expect_the_same_words(place, row)?;
         let raw = &mut self.episodes[episode];
-        raw.rows.push(place);
+        raw.records.push(place);
         let Roles { state, velocity, context, .. } = &self.roles;
         let filled = fill(row, state, &mut raw.positions)
             .and_then(|()| fill(row, context, &mut raw.positions))
@@ -204,7 +204,7 @@ impl Table {
         self.episodes.push(RawEpisode {
             name,
             file: self.file.clone(),
-            rows: Rows::default(),
+            records: Records::default(),
             times: Vec::new(),
             positions: Vec::new(),
             velocities: Vec::new(),
@@ -217,7 +217,7 @@ impl Table {
         let raw = &mut self.episodes[episode];
         match &mut raw.constraint {
             None => raw.constraint = Some(Labels::from(&*self.label)),
-            Some(labels) => labels.switch(raw.rows.len(), &self.label),
+            Some(labels) => labels.switch(raw.records.len(), &self.label),
         }
     }
 
@@ -260,7 +260,7 @@ impl Table {
         let labels_vary =
             self.roles.constraint.is_some_and(|column| says(&self.names[column])) || self.episodes.iter().any(differ);
         for (raw, clock) in self.episodes.iter_mut().zip(self.clocks) {
-            raw.times = clock.seconds(raw.rows.len(), time_unit);
+            raw.times = clock.seconds(raw.records.len(), time_unit);
             // The vectors grew number by number and live as long as the recordings, so spare capacity is released.
             [&mut raw.times, &mut raw.positions, &mut raw.velocities].into_iter().for_each(Vec::shrink_to_fit);
             raw.constraint.take_if(|labels| !labels_vary || labels.is_blank());

@@ -7,7 +7,7 @@ fn recordings(names: &[&str]) -> Recordings {
         |shift: f64| nalgebra::DMatrix::from_fn(n, 5, |row, column| (row as f64 + shift + column as f64 * 0.3).sin());
     let episode = |number: usize| motion::Episode {
         name: format!("take {number}"),
-        source: motion::Source { file: "made".to_owned(), rows: None },
+        source: motion::Source { file: "made".to_owned(), records: None },
         times: (0..5).map(|sample| f64::from(sample) * 0.1).collect(),
         positions: numbers(number as f64),
         velocities: Some(numbers(number as f64 + 0.5)),

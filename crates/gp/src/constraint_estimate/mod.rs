@@ -6,10 +6,10 @@
 
 mod noise;
 mod parts;
+mod projected_samples;
 mod spaces;
 mod stretch_estimate;
 mod stretch_kind;
-mod view;
 mod wanted;
 
 pub use stretch_estimate::{Acting, StretchEstimate};
@@ -26,9 +26,9 @@ use crate::stretches::{MOST_DIMENSIONS, centred, evenly, parts};
 use crate::{GpError, Rows};
 use noise::noise;
 use parts::{Parts, rarity_of};
+use projected_samples::{Disagreement, ProjectedSamples, SHARED};
 use stretch_estimate::canonical;
 use stretch_kind::{Movement, StretchKind};
-use view::{Disagreement, SHARED, View};
 use wanted::Wanted;
 
 /// Standard deviation of the policy in the first round, as a share of its root mean square. In the second round it is the one that the
@@ -172,11 +172,11 @@ impl Search<'_> {
         let weight = |variance: f64| 1.0 / (self.noise + sharing * variance.max(least));
         let weights = self.wanted.variances(rows).into_iter().map(weight).collect();
         let disagreement = Disagreement::new(disagreement, weights, self.noise);
-        let view = |(space, basis): (&TaskSpace, &Option<DMatrix<f64>>)| {
-            basis.as_ref().map(|basis| View::of(space, basis, rows, &velocities, &disagreement, self.still))
+        let projected = |(space, basis): (&TaskSpace, &Option<DMatrix<f64>>)| {
+            basis.as_ref().map(|basis| ProjectedSamples::of(space, basis, rows, &velocities, &disagreement, self.still))
         };
-        let views = self.spaces.iter().zip(&self.bases).map(view).collect();
-        Movement { disagreement, views, rarity: self.rarity.clone(), still: self.still }
+        let projected = self.spaces.iter().zip(&self.bases).map(projected).collect();
+        Movement { disagreement, projected, rarity: self.rarity.clone(), still: self.still }
     }
 
     /// The policy's variance that all parts leave, as the median over them; `None` if there are none.
@@ -226,13 +226,13 @@ impl Search<'_> {
             hidden: DMatrix::zeros(dim, 0),
         };
         let inside = &rows[part.begin..part.end];
-        if let (Some((view, directions, rank)), StretchKind::Constrained { space, .. }) =
+        if let (Some((samples, directions, rank)), StretchKind::Constrained { space, .. }) =
             (movement.constraint(part), part.kind)
         {
-            let change = view.change((part.begin, part.end), &directions, rank, &movement.disagreement);
+            let change = samples.change((part.begin, part.end), &directions, rank, &movement.disagreement);
             stretch.acting = Acting::Constraint;
             stretch.space = space;
-            stretch.matrix = canonical(&(&view.basis * directions.first(rank)));
+            stretch.matrix = canonical(&(&samples.basis * directions.first(rank)));
             self.find_bound(&mut stretch, inside);
             stretch.angle = self.angle(inside, (space, rank), least);
             stretch.evidence = -0.5 * change;
@@ -246,8 +246,8 @@ impl Search<'_> {
     /// (S29) of a constraint on all of some rows. The policy's error counts once on a stretch, since errors along it are alike.
     fn angle(&self, rows: &[usize], (space, rank): (usize, usize), least: f64) -> f64 {
         let movement = self.movement(rows, least, SHARED.max(rows.len() as f64));
-        let view = movement.views[space].as_ref();
-        view.map_or(0.0, |view| view.directions(0, rows.len(), self.noise).angle(rank))
+        let samples = movement.projected[space].as_ref();
+        samples.map_or(0.0, |samples| samples.directions(0, rows.len(), self.noise).angle(rank))
     }
 
     /// Directions (n, r) other than the rows of A (k, n) along which velocities do not vary.

@@ -1,6 +1,6 @@
 //! The kind of a part of a movement: free, or under a constraint of some rank in some space.
 
-use super::view::{Directions, Disagreement, View};
+use super::projected_samples::{Directions, Disagreement, ProjectedSamples};
 use crate::stretches::partition::{Costs, Growing, Part, SPARE};
 use crate::stretches::segmentation::{DIMENSION, PARAMETER, SEGMENT};
 
@@ -11,11 +11,11 @@ pub(super) enum StretchKind {
     Constrained { space: usize, rank: usize },
 }
 
-/// One movement, viewed in all spaces.
+/// One movement, projected onto all spaces.
 pub(super) struct Movement {
     pub(super) disagreement: Disagreement,
     /// `None` for a space that is not searched.
-    pub(super) views: Vec<Option<View>>,
+    pub(super) projected: Vec<Option<ProjectedSamples>>,
     /// Additional cost (S38) of a constraint in each space, for its rarity.
     pub(super) rarity: Vec<f64>,
     /// Whether b = 0.
@@ -29,17 +29,17 @@ impl Movement {
         let none = self.disagreement.square(begin, end);
         let mut best = (none + SEGMENT, StretchKind::Free);
         let mut of_ranks = Vec::new();
-        for (space, view) in self.views.iter().enumerate() {
-            let Some(view) = view else { continue };
-            let directions = view.directions(begin, end, self.disagreement.noise);
-            if view.is_recorded() {
+        for (space, samples) in self.projected.iter().enumerate() {
+            let Some(samples) = samples else { continue };
+            let directions = samples.directions(begin, end, self.disagreement.noise);
+            if samples.is_recorded() {
                 let sums = directions.values.iter().scan(none, |sum, value| {
                     *sum += value;
                     Some(*sum)
                 });
                 of_ranks = sums.collect();
             }
-            if let Some((cost, rank)) = self.best_rank(view, &directions, (begin, end)) {
+            if let Some((cost, rank)) = self.best_rank(samples, &directions, (begin, end)) {
                 let cost = cost + self.rarity[space];
                 if cost < best.0 {
                     best = (cost, StretchKind::Constrained { space, rank });
@@ -51,15 +51,20 @@ impl Movement {
 
     /// Costs of all parts, for one search.
     pub(super) fn costs(&self) -> MovementCosts<'_> {
-        let recorded = self.views.iter().flatten().filter(|view| view.is_recorded());
-        let varies = recorded.map(View::variation).sum::<f64>() / self.disagreement.noise;
+        let recorded = self.projected.iter().flatten().filter(|samples| samples.is_recorded());
+        let varies = recorded.map(ProjectedSamples::variation).sum::<f64>() / self.disagreement.noise;
         let left = Growing::new(self.disagreement.weights.len(), self.disagreement.total() + varies);
-        let bounded = self.views.iter().flatten().all(View::is_recorded);
+        let bounded = self.projected.iter().flatten().all(ProjectedSamples::is_recorded);
         MovementCosts { movement: self, left, bounded }
     }
 
     /// The least cost of a constraint in one space, and its rank; `None` if no rank is possible.
-    fn best_rank(&self, view: &View, directions: &Directions, (begin, end): (usize, usize)) -> Option<(f64, usize)> {
+    fn best_rank(
+        &self,
+        samples: &ProjectedSamples,
+        directions: &Directions,
+        (begin, end): (usize, usize),
+    ) -> Option<(f64, usize)> {
         let (none, dim) = (self.disagreement.square(begin, end), directions.values.len());
         let mut best: Option<(f64, usize)> = None;
         for rank in 1..=dim {
@@ -69,7 +74,7 @@ impl Movement {
             if end - begin < dim - rank + SPARE || directions.angle(rank) > MOST_ANGLE {
                 continue;
             }
-            let change = view.change((begin, end), directions, rank, &self.disagreement);
+            let change = samples.change((begin, end), directions, rank, &self.disagreement);
             let cost = none + change + self.price((begin, end), dim, rank) + SEGMENT;
             if best.is_none_or(|(least, _)| cost < least) {
                 best = Some((cost, rank));
@@ -81,11 +86,11 @@ impl Movement {
     /// (S28) of a part in each space, without the cost of rarity; infinite if no rank is possible.
     pub(super) fn costs_in_spaces(&self, part: &Part<StretchKind>) -> Vec<f64> {
         let ends = (part.begin, part.end);
-        let of = |view: &View| {
-            let directions = view.directions(ends.0, ends.1, self.disagreement.noise);
-            self.best_rank(view, &directions, ends).map(|(cost, _)| cost)
+        let of = |samples: &ProjectedSamples| {
+            let directions = samples.directions(ends.0, ends.1, self.disagreement.noise);
+            self.best_rank(samples, &directions, ends).map(|(cost, _)| cost)
         };
-        self.views.iter().map(|view| view.as_ref().and_then(of).unwrap_or(f64::INFINITY)).collect()
+        self.projected.iter().map(|samples| samples.as_ref().and_then(of).unwrap_or(f64::INFINITY)).collect()
     }
 
     /// Cost of the parameters of A with `rank` rows, and of b unless it is 0. It is less if velocities are known better than the policy,
@@ -96,11 +101,11 @@ impl Movement {
         rank as f64 * (parameters / rank as f64 + DIMENSION - accident).max(ROW)
     }
 
-    /// The view and the directions of a part with a constraint, and its rank.
-    pub(super) fn constraint(&self, part: &Part<StretchKind>) -> Option<(&View, Directions, usize)> {
+    /// The samples and the directions of a part with a constraint, and its rank.
+    pub(super) fn constraint(&self, part: &Part<StretchKind>) -> Option<(&ProjectedSamples, Directions, usize)> {
         let StretchKind::Constrained { space, rank } = part.kind else { return None };
-        let view = self.views[space].as_ref()?;
-        Some((view, view.directions(part.begin, part.end, self.disagreement.noise), rank))
+        let samples = self.projected[space].as_ref()?;
+        Some((samples, samples.directions(part.begin, part.end, self.disagreement.noise), rank))
     }
 
     /// |Nd|² of a part's samples, each divided by the number of dimensions that the constraint leaves free.
@@ -109,9 +114,9 @@ impl Movement {
         let squares = |at: usize| of.column(at).norm_squared();
         let (rank, squares): (usize, Vec<f64>) = match self.constraint(part) {
             None => (0, (part.begin..part.end).map(squares).collect()),
-            Some((view, directions, rank)) => {
+            Some((samples, directions, rank)) => {
                 let rows = directions.first(rank);
-                (rank, (part.begin..part.end).map(|at| view.left(at, &rows, &self.disagreement)).collect())
+                (rank, (part.begin..part.end).map(|at| samples.left(at, &rows, &self.disagreement)).collect())
             }
         };
         let freedom = of.nrows() - rank;

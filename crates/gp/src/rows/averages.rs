@@ -12,9 +12,9 @@ use crate::Rows;
 /// alone.
 const DEVIATIONS: f64 = 7.0;
 
-/// Means of successive samples.
+/// The mean of successive samples.
 #[derive(Debug, Clone)]
-struct Block {
+struct Mean {
     /// Its first row.
     first: usize,
     /// Position of the first sample in its trajectory, and number of samples, a power of two.
@@ -57,7 +57,7 @@ impl Rows {
         for trajectory in self.indices.chunk_by(|a, b| a.trajectory == b.trajectory) {
             let rows = first..first + trajectory.len();
             first = rows.end;
-            self.blocks(rows, variances).iter().for_each(|block| means.push(block));
+            self.means(rows, variances).iter().for_each(|mean| means.push(mean));
         }
         let count = means.indices.len();
         let matrix = |numbers: Vec<f64>| DMatrix::from_vec(numbers.len() / count, count, numbers);
@@ -77,14 +77,14 @@ impl Rows {
         })
     }
 
-    /// The blocks of one trajectory. Blocks begin at multiples of their length.
-    fn blocks(&self, rows: Range<usize>, variances: &[f64]) -> Vec<Block> {
+    /// The means of one trajectory. Each begins at a multiple of its number of samples.
+    fn means(&self, rows: Range<usize>, variances: &[f64]) -> Vec<Mean> {
         let dim = self.dim() as f64;
         let most = dim + DEVIATIONS * (2.0 * dim).sqrt();
-        let mut blocks: Vec<Block> = Vec::new();
+        let mut means: Vec<Mean> = Vec::new();
         let first = rows.start;
         for row in rows {
-            let mut last = Block {
+            let mut last = Mean {
                 first: row,
                 begin: row - first,
                 count: 1,
@@ -95,24 +95,24 @@ impl Rows {
                 index: self.indices()[row],
                 label: self.labels().map(|labels| labels[row]),
             };
-            while let Some(before) = blocks.pop_if(|before| before.joins(&last, most)) {
+            while let Some(before) = means.pop_if(|before| before.joins(&last, most)) {
                 last = before.with(&last);
             }
-            blocks.push(last);
+            means.push(last);
         }
-        blocks
+        means
     }
 }
 
-impl Block {
-    fn joins(&self, next: &Block, most: f64) -> bool {
+impl Mean {
+    fn joins(&self, next: &Mean, most: f64) -> bool {
         let aligned = self.count == next.count && self.begin.is_multiple_of(2 * self.count) && self.label == next.label;
         aligned && (&self.velocity - &next.velocity).norm_squared() <= most * (self.variance + next.variance)
     }
 
-    fn with(self, next: &Block) -> Block {
+    fn with(self, next: &Mean) -> Mean {
         let mean = |a: DVector<f64>, b: &DVector<f64>| (a + b) * 0.5;
-        Block {
+        Mean {
             count: 2 * self.count,
             state: mean(self.state, &next.state),
             velocity: mean(self.velocity, &next.velocity),
@@ -123,7 +123,7 @@ impl Block {
     }
 }
 
-/// Blocks of all trajectories, stored as one list per quantity.
+/// Means of all trajectories, stored as one list per quantity.
 #[derive(Default)]
 struct Means {
     states: Vec<f64>,
@@ -132,19 +132,19 @@ struct Means {
     variances: Vec<f64>,
     indices: Vec<SampleIndex>,
     labels: Vec<usize>,
-    /// The rows of each block.
+    /// The rows of each mean.
     spans: Vec<Range<usize>>,
 }
 
 impl Means {
-    fn push(&mut self, block: &Block) {
-        self.states.extend(&block.state);
-        self.velocities.extend(&block.velocity);
-        self.momenta.extend(block.momentum.iter().flatten());
-        self.variances.push(block.variance);
-        self.indices.push(block.index);
-        self.labels.extend(block.label);
-        self.spans.push(block.first..block.first + block.count);
+    fn push(&mut self, mean: &Mean) {
+        self.states.extend(&mean.state);
+        self.velocities.extend(&mean.velocity);
+        self.momenta.extend(mean.momentum.iter().flatten());
+        self.variances.push(mean.variance);
+        self.indices.push(mean.index);
+        self.labels.extend(mean.label);
+        self.spans.push(mean.first..mean.first + mean.count);
     }
 }
 

@@ -17,7 +17,7 @@ pub(crate) struct Part {
 }
 
 /// A(x, t), (k, n), or the reason why it has no value there.
-pub(crate) type Rows = dyn Fn(DVectorView<'_, f64>, f64) -> Result<DMatrix<f64>, String> + Send + Sync;
+type MatrixFunction = dyn Fn(DVectorView<'_, f64>, f64) -> Result<DMatrix<f64>, String> + Send + Sync;
 
 /// The kind of constraint.
 #[derive(Debug, Clone)]
@@ -50,9 +50,9 @@ impl Evaluated {
     }
 }
 
-/// Shared [`Rows`].
+/// Shared [`MatrixFunction`].
 #[derive(Clone)]
-pub(crate) struct Function(pub(crate) Arc<Rows>);
+pub(crate) struct Function(pub(crate) Arc<MatrixFunction>);
 
 impl fmt::Debug for Function {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -44,7 +44,7 @@ impl Case {
         let dim = recordings[0].truth.states.nrows();
         let episode = |(at, recording): (usize, &Recording)| Episode {
             name: (at + 1).to_string(),
-            source: Source { file: "case".to_owned(), rows: None },
+            source: Source { file: "case".to_owned(), records: None },
             times: (0..recording.observed.n_samples()).map(|i| i as f64 * recording.observed.time_step()).collect(),
             positions: recording.observed.states().clone(),
             velocities: recording.observed.velocities().filter(|_| has == Has::Velocities).cloned(),

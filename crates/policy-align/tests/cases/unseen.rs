@@ -91,7 +91,7 @@ pub(super) fn of_movements(names: &[&str], movements: &[[DMatrix<f64>; 3]]) -> C
     let (shown, fresh) = movements.split_at(COUNT);
     let episode = |(at, [states, velocities, _]): (usize, &[DMatrix<f64>; 3])| Episode {
         name: (at + 1).to_string(),
-        source: Source { file: "case".to_owned(), rows: None },
+        source: Source { file: "case".to_owned(), records: None },
         times: Times::Even { step: STEP, len: SAMPLES },
         positions: states.clone(),
         velocities: Some(velocities.clone()),

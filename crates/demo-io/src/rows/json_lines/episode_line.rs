@@ -3,7 +3,7 @@ use crate::input::Input;
 use crate::names::columns::{Asked, Chosen};
 use crate::names::selection::flags;
 use crate::raw::{
-    MOST_EPISODES, RawEpisode, RawRecordings, Rows, Unknown, counted_names, even_times, no_time, period,
+    MOST_EPISODES, RawEpisode, RawRecordings, Records, Unknown, counted_names, even_times, no_time, period,
     seconds_since_first, unused,
 };
 use crate::rows::json::Json;
@@ -84,7 +84,7 @@ impl<'a> EpisodeLines<'a> {
         self.episodes.push(RawEpisode {
             name: label(&["episode", "name"]).unwrap_or_else(|| (self.before + self.episodes.len()).to_string()),
             file: self.input.name.clone(),
-            rows: Rows::consecutive(0, samples.len()),
+            records: Records::consecutive(0, samples.len()),
             times: self.times(line, samples.len(), &place)?,
             positions,
             velocities,

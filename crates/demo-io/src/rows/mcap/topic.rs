@@ -203,7 +203,7 @@ impl<'a> Topic<'a> {
         let raw = RawEpisode {
             name: self.input.stem.clone(),
             file: self.input.name.clone(),
-            rows: set.numbers.iter().copied().collect(),
+            records: set.numbers.iter().copied().collect(),
             times,
             positions: pick(&set.positions, &columns),
             velocities,

@@ -31,7 +31,7 @@ pub(super) struct PolicyWithRows<'a> {
 }
 
 /// Some rows, relative to a state.
-struct Rows<'a, S: Simd, const U: usize> {
+struct RelativeRows<'a, S: Simd, const U: usize> {
     /// z', (n + p).
     states: &'a [Abreast],
     /// n', (n).
@@ -52,7 +52,7 @@ impl Expansion {
         rows: &'a [Abreast],
         z: &[f64],
         (first, part): (usize, usize),
-    ) -> Rows<'a, S, U> {
+    ) -> RelativeRows<'a, S, U> {
         let moving = rows.len() - 1 - z.len();
         let (states, rest) = rows.split_at(z.len());
         let (directions, weight) = rest.split_at(moving);
@@ -76,7 +76,7 @@ impl Expansion {
             }
         }
         let (g, h) = self.falling.slopes(squared, along);
-        Rows { states, directions, weight: weight[0].load(simd, first, part), beta, g, h }
+        RelativeRows { states, directions, weight: weight[0].load(simd, first, part), beta, g, h }
     }
 }
 
@@ -104,7 +104,7 @@ impl OverRows for Action<'_> {
     }
 }
 
-impl<S: Simd, const U: usize> Rows<'_, S, U> {
+impl<S: Simd, const U: usize> RelativeRows<'_, S, U> {
     /// Adds the rows' parts of the action, from axis `from` on, to register `part` of its sums.
     #[inline(always)]
     fn add_action(&self, (z, from): (&[f64], usize), (first, part): (usize, usize), sums: &mut [[f64; LANES]]) {
@@ -166,7 +166,7 @@ impl OverRows for PolicyWithRows<'_> {
     }
 }
 
-impl<S: Simd, const U: usize> Rows<'_, S, U> {
+impl<S: Simd, const U: usize> RelativeRows<'_, S, U> {
     /// Covariances of each axis with the rows' slopes: g n' − h β (z − z'), and a trend's a n' + b (n' zᵀz' + z' n'ᵀz) + c (n'
     /// xᵀx' − z' n'ᵀz), where x is the state in z.
     #[inline(always)]

@@ -181,7 +181,7 @@ pub(crate) fn write_paths(
     let file = output.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
     let episode = |(at, followed): (usize, &Path)| Episode {
         name: at.to_string(),
-        source: Source { file: file.clone(), rows: None },
+        source: Source { file: file.clone(), records: None },
         times: Times::Stamped(followed.times.clone()),
         positions: followed.states.clone(),
         velocities: Some(followed.velocities.clone()),

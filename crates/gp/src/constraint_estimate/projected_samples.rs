@@ -1,4 +1,4 @@
-//! The samples of one movement, viewed in a task space.
+//! The samples of one movement, projected onto a task space.
 
 use nalgebra::{DMatrix, DVector, DVectorView};
 
@@ -50,7 +50,7 @@ impl Disagreement {
 }
 
 /// Velocities v = Ju and the solutions y of Jᵀy = d, in the directions in which the space moves.
-pub(super) struct View {
+pub(super) struct ProjectedSamples {
     /// Directions in which the space moves, (M, m).
     pub(super) basis: DMatrix<f64>,
     /// v, (m, N).
@@ -96,8 +96,8 @@ impl Directions {
     }
 }
 
-impl View {
-    /// The view of some rows in a space; if `still`, constraints have b = 0. `velocities` (n, N) belong to these rows.
+impl ProjectedSamples {
+    /// Some rows projected onto a space; if `still`, constraints have b = 0. `velocities` (n, N) belong to these rows.
     pub(super) fn of(
         space: &TaskSpace,
         basis: &DMatrix<f64>,
@@ -105,11 +105,15 @@ impl View {
         velocities: &DMatrix<f64>,
         disagreement: &Disagreement,
         still: bool,
-    ) -> View {
+    ) -> ProjectedSamples {
         match &space.jacobians {
-            None => {
-                View::summed(basis.clone(), (velocities.clone(), disagreement.of.clone()), None, disagreement, still)
-            }
+            None => ProjectedSamples::summed(
+                basis.clone(),
+                (velocities.clone(), disagreement.of.clone()),
+                None,
+                disagreement,
+                still,
+            ),
             Some(jacobians) => {
                 let own: Vec<DMatrix<f64>> = rows.iter().map(|&row| basis.tr_mul(&jacobians[row])).collect();
                 let through = |of: &DMatrix<f64>| {
@@ -119,7 +123,7 @@ impl View {
                 };
                 let grams = own.iter().map(|j| j * j.transpose()).collect();
                 let (velocities, disagreements) = (through(velocities), through(&disagreement.of));
-                View::summed(basis.clone(), (velocities, disagreements), Some(grams), disagreement, still)
+                ProjectedSamples::summed(basis.clone(), (velocities, disagreements), Some(grams), disagreement, still)
             }
         }
     }
@@ -130,7 +134,7 @@ impl View {
         grams: Option<Vec<DMatrix<f64>>>,
         disagreement: &Disagreement,
         still: bool,
-    ) -> View {
+    ) -> ProjectedSamples {
         let m = basis.ncols();
         let zero = DMatrix::zeros(m, m);
         let mut sums = vec![Sums { multipliers: zero.clone(), gain: 0.0, noise: (zero.clone(), zero) }];
@@ -147,10 +151,10 @@ impl View {
             sums.push(Sums { multipliers, gain, noise });
         }
         let scatters = if still { PrefixSums::about_zero(&velocities) } else { PrefixSums::of(&velocities) };
-        View { basis, velocities, disagreements, grams, scatters, sums }
+        ProjectedSamples { basis, velocities, disagreements, grams, scatters, sums }
     }
 
-    /// Whether v = u. Then the sum of [`View::change`] and [`Disagreement::square`] is the minimum of a sum of squares.
+    /// Whether v = u. Then the sum of [`ProjectedSamples::change`] and [`Disagreement::square`] is the minimum of a sum of squares.
     pub(super) fn is_recorded(&self) -> bool {
         self.grams.is_none()
     }
