@@ -214,7 +214,7 @@ impl AutoFit {
     /// The reading as a text for the user.
     pub fn text(&self) -> String {
         let text = self.numbers.text_of(self.reading(), self.slope.report.expected_nupe);
-        let pushed = self.slope.report.push.map_or_else(String::new, |push| {
+        let pushed = self.slope.report.push.filter(|&push| push > 0.0).map_or_else(String::new, |push| {
             let percent = 100.0 * push;
             format!(" The constraints also pushed, on average with {percent:.0} % of the policy's speed: it was learnt from the directions in which velocities differ.")
         });

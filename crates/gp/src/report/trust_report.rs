@@ -52,7 +52,7 @@ pub struct TrustReport {
     /// Number of samples before which a constraint probably switched.
     pub switches: Option<usize>,
     /// Root mean square of the constraints' pushes A⁺b, as a share of the policy's speed, if the policy was learnt from directions in which
-    /// velocities differ.
+    /// velocities differ. Pushes that equal the policy's component along them count as 0.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub push: Option<f64>,
     /// The task space whose constraints the policy was learnt from (S41), as its index in [`Rows::task_spaces`](crate::Rows::task_spaces).

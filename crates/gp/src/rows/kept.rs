@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::rows::thinning::{MIDDLE, thinned};
 use crate::rows::{MOST_ROWS, parts_along};
+use crate::stretches::pushes::Pushes;
 use crate::{GpError, Rows};
 
 /// The selection of the rows that a fit keeps.
@@ -61,8 +62,8 @@ fn none(count: &usize) -> bool {
 pub(crate) struct OfStretches {
     /// D (S23), (M).
     pub(crate) weights: Vec<f64>,
-    /// Root mean square of the pushes A⁺b, in units of the state per second; `None` if b = 0.
-    pub(crate) push: Option<f64>,
+    /// `None` if b = 0.
+    pub(crate) pushes: Option<Pushes>,
     /// The task space of the stretches, as an index into those of the rows; `None`: the recorded coordinates.
     pub(crate) space: Option<usize>,
     /// Average number of rows per sample.

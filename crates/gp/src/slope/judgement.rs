@@ -55,6 +55,7 @@ pub(crate) fn report(chosen: &ReportInput<'_>) -> TrustReport {
     // Skips the first sample, at which every movement begins.
     let after_first = |switches: &Vec<f64>| switches.iter().skip(1).filter(|&&p| p > SWITCHED).count();
     let count = |switches: &[Vec<f64>]| switches.iter().map(after_first).sum();
+    let pushes = kept.of_stretches.as_ref().and_then(|of| of.pushes.as_ref());
     TrustReport {
         r_squared: taken.left_out.r_squared,
         z_squared: taken.left_out.z_squared,
@@ -75,7 +76,7 @@ pub(crate) fn report(chosen: &ReportInput<'_>) -> TrustReport {
         noise: rows.noise(),
         switches: rows.switches().map(count),
         task_space: kept.of_stretches.as_ref().and_then(|of| of.space),
-        push: kept.of_stretches.as_ref().and_then(|of| of.push).map(|push| push / root_mean_square(&taken.actions)),
+        push: pushes.map(|of| of.root_mean_square(&taken.model.actions(&of.states)) / root_mean_square(&taken.actions)),
     }
 }
 

@@ -7,6 +7,7 @@
 pub(crate) mod cut;
 pub(crate) mod noise;
 pub(crate) mod partition;
+pub(crate) mod pushes;
 pub(crate) mod rows;
 pub(crate) mod segmentation;
 pub(crate) mod view;
@@ -43,6 +44,8 @@ pub(crate) struct Stretch {
     /// The push A⁺b: the mean velocity along the normals of the plane that contains the velocities, (n); in a task space, the push at the
     /// middle of the stretch.
     pub(crate) push: DVector<f64>,
+    /// The state there, with its context, (n + p).
+    pub(crate) middle: DVector<f64>,
     /// Squared push in units of its variance under noise, and the number of normals.
     pub(crate) significance: (f64, usize),
     /// The rank of the plane that contains the velocities.
@@ -215,13 +218,15 @@ fn stretch(rows: &Rows, view: &View<'_>, inside: &[usize], (rank, least): (usize
     let tilt: f64 = along.iter().zip(&svd.singular_values).map(|(u, s)| (u / s).powi(2)).sum();
     let variance = noise * (1.0 / inside.len() as f64 + tilt);
     let index = |row: usize| rows.indices()[row];
+    let middle = inside[inside.len() / 2];
     let (first, last) = (index(inside[0]), index(inside[inside.len() - 1]));
     Some(Stretch {
         trajectory: first.trajectory,
         samples: (first.sample, last.sample),
         rank,
         significance: (push.norm_squared() / variance, view.dim() - rank),
-        push: view.recorded_push(rows, inside[inside.len() / 2], &plane, push),
+        push: view.recorded_push(rows, middle, &plane, push),
+        middle: rows.states().column(middle).into_owned(),
         lengths: span.lengths,
         directions: span.directions,
         whole: None,

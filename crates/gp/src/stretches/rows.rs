@@ -9,6 +9,7 @@ use crate::Rows;
 use crate::rows::kept::{Kept, OfStretches, RowsDropped, Selection};
 use crate::rows::noise_weights::relative;
 use crate::rows::thinning::{MIDDLE, thinned};
+use crate::stretches::pushes::Pushes;
 use crate::stretches::view::{Free, Through};
 use crate::stretches::{Stretch, Stretches};
 use motion::{SampleIndex, upper_median};
@@ -121,7 +122,7 @@ impl Stretches {
             variances: None,
             of_stretches: Some(OfStretches {
                 weights: relative(equations.iter().map(variance).collect()),
-                push: self.pushed.then(|| self.push()),
+                pushes: self.pushed.then(|| self.pushes()),
                 space: self.through.as_ref().map(|through| through.space),
                 of_sample: found as f64 / samples as f64,
             }),
@@ -198,6 +199,13 @@ impl Stretches {
         (squares / f64::from(count)).sqrt()
     }
 
+    fn pushes(&self) -> Pushes {
+        let columns = |of: fn(&Stretch) -> &DVector<f64>| {
+            DMatrix::from_columns(&self.right().map(of).cloned().collect::<Vec<_>>())
+        };
+        Pushes { states: columns(|stretch| &stretch.middle), velocities: columns(|stretch| &stretch.push) }
+    }
+
     /// The stretches that are not contradicted.
     fn right(&self) -> impl Iterator<Item = &Stretch> {
         self.all.iter().filter(|stretch| !stretch.is_contradicted())
@@ -240,6 +248,7 @@ mod tests {
             directions: DMatrix::zeros(3, 0),
             lengths: Vec::new(),
             push: DVector::zeros(3),
+            middle: DVector::zeros(3),
             significance: (square, normals),
             rank: 3 - normals,
             whole: None,

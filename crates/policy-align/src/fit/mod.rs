@@ -115,7 +115,7 @@ pub fn fit_with(
             findings.push(finding.clone());
         }
     }
-    if let Some(push) = readings.slope().report().push {
+    if let Some(push) = readings.slope().report().push.filter(|&push| push > 0.0) {
         let learnt = options.learner != LearnerChoice::PolicyAlign && takes_slope(&readings, options.learner);
         pushed(push, learnt, prepared, &mut findings);
     }
