@@ -6,6 +6,8 @@ use nalgebra::DMatrix;
 const DIFFERS: f64 = 0.5;
 /// Minimum share of such pushes in the sum of squares of all.
 const LEAST: f64 = 0.25;
+/// Pushes below this share of the policy's root mean square are too small for components of the policy.
+const SMALL: f64 = 0.01;
 
 /// Pushes A⁺b of stretches. If a movement used only some of the directions that its constraint left free, those look like pushes in which
 /// its velocity hardly changed.
@@ -19,7 +21,7 @@ pub(crate) struct Pushes {
 
 impl Pushes {
     /// Root mean square of the pushes over all stretches; those that the policy's actions at their states, (n, S), explain count as 0, and so
-    /// do all if few are left.
+    /// do all if few are left, unless all are small.
     pub(crate) fn root_mean_square(&self, actions: &DMatrix<f64>) -> f64 {
         let (mut all, mut pushing) = (0.0, 0.0);
         for (push, action) in self.velocities.column_iter().zip(actions.column_iter()) {
@@ -28,6 +30,9 @@ impl Pushes {
             if (push.dot(&action) - square).abs() > DIFFERS * square {
                 pushing += square;
             }
+        }
+        if all < SMALL * SMALL * actions.norm_squared() {
+            return (all / actions.ncols() as f64).sqrt();
         }
         if pushing > LEAST * all { (pushing / actions.ncols() as f64).sqrt() } else { 0.0 }
     }
@@ -62,6 +67,8 @@ mod tests {
             }
             let states = DMatrix::zeros(dim, count);
             let exact: f64 = velocities.columns(components, pushes).norm_squared();
+            // By chance, all components may be small.
+            prop_assume!(velocities.norm() > SMALL * actions.norm());
             let expected = if exact > LEAST * velocities.norm_squared() { (exact / count as f64).sqrt() } else { 0.0 };
             let found = Pushes { states, velocities }.root_mean_square(&actions);
             prop_assert!((found - expected).abs() < 1e-12 * (1.0 + expected), "{found} {expected}");
