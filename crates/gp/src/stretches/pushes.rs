@@ -6,8 +6,8 @@ use nalgebra::DMatrix;
 const DIFFERS: f64 = 0.5;
 /// Minimum share of such pushes in the sum of squares of all.
 const LEAST: f64 = 0.25;
-/// Pushes below this share of the policy's root mean square are too small for components of the policy.
-const SMALL: f64 = 0.01;
+/// Pushes below this share of the policy's root mean square are too small for components of the policy, and may be noise.
+pub(crate) const SMALL: f64 = 0.01;
 
 /// Pushes A⁺b of stretches. If a movement used only some of the directions that its constraint left free, those look like pushes in which
 /// its velocity hardly changed.

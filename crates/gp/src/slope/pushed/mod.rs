@@ -13,6 +13,7 @@ use crate::slope::judgement::{ReportInput, report, root_mean_square};
 use crate::slope::push_test::PushTest;
 use crate::slope::search::{Outcome, outcome, outcome_of_nearly_best};
 use crate::slope::slope_gp::SlopeGp;
+use crate::stretches::pushes::SMALL;
 use crate::stretches::rows::covered;
 use crate::stretches::view::View;
 use crate::stretches::{Stretches, Switches};
@@ -43,8 +44,6 @@ const TIMES: [usize; 3] = [6, 2, 3];
 const MOST: [usize; 3] = [2400, 400, 1500];
 /// From this many rows per stretch on, in the recorded coordinates, more rows add almost nothing.
 const OF_A_STRETCH: usize = 4;
-/// Pushes below this share of the policy's root mean square may be none.
-const SMALL: f64 = 0.01;
 /// Number of candidates with the least expected error on few rows that are fitted to more rows, because few rows do not reveal a wrong
 /// stretch among many.
 const FINALISTS: usize = 3;
