@@ -28,8 +28,8 @@ use rand_chacha::ChaCha8Rng;
 
 use crate::channel_joints::joints_in_degrees;
 use crate::trust::{
-    AlignedNumbers, CommonPlane, TrustNumbers, VerdictInput, along_the_motion, common_point, common_surface, judge,
-    pushed, share_leaving, share_unknown, wall,
+    AlignedNumbers, CommonPlane, TrustNumbers, VerdictInput, along_the_motion, common_point, common_surface,
+    extrapolated, judge, pushed, share_leaving, share_unknown, wall,
 };
 use crate::{DataSummary, Decision, Finding, FitError, Learnt, MadeBy, Model, PredictedSpeed, Prepared};
 use aligning::AlignedFit;
@@ -122,6 +122,7 @@ pub fn fit_with(
     let from_pushes = takes_slope(&readings, options.learner) && readings.slope().report().push.is_some();
     findings.extend(along_the_motion(policy, &rows, prepared, &numbers, from_pushes));
     findings.extend(robot.and_then(|robot| joints_in_degrees(&robot, &prepared.state)));
+    findings.extend(extrapolated(policy, &actions::states(&rows), rows.velocities()));
     findings.extend(plane(prepared, &numbers));
     findings.extend(common_surface(&rows, &prepared.state, &numbers));
     findings.extend(common_point(&prepared.demonstrations, &prepared.state));

@@ -2,6 +2,7 @@
 
 mod along_motion;
 mod between;
+mod extrapolated;
 mod freely;
 mod friction;
 mod goals;
@@ -15,6 +16,7 @@ mod unexplained;
 
 pub(crate) use along_motion::along_the_motion;
 pub(crate) use between::share_unknown;
+pub(crate) use extrapolated::extrapolated;
 pub(crate) use freely::share_leaving;
 pub(crate) use judge::{VerdictInput, judge};
 pub use numbers::{AlignedNumbers, TrustNumbers};

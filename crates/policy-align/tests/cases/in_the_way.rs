@@ -1,4 +1,4 @@
-//! A wall that all movements reach, rotating constraints, and constraints on a few movements.
+//! A wall that all movements reach, rotating constraints, constraints on a few movements, and pushes into fast regions.
 
 use nalgebra::{DMatrix, DVector};
 use rand::{RngExt, SeedableRng};
@@ -80,6 +80,23 @@ fn few_constrained(constrained: usize, seed: u64) -> Case {
     of_movements(&["x", "y", "z"], &movements)
 }
 
+/// A limit cycle whose speed grows with the third power of the distance; constraints push movements out to where it is fast.
+fn pushed_out(seed: u64) -> Case {
+    let mut rng = ChaCha8Rng::seed_from_u64(seed);
+    let policy = |x: &DVector<f64>| {
+        let inwards = 1.0 - x.norm_squared();
+        DVector::from_vec(vec![x[1] + inwards * x[0], -x[0] + inwards * x[1]])
+    };
+    let movements: Vec<[DMatrix<f64>; 3]> = (0..COUNT + FRESH)
+        .map(|_| {
+            let start = DVector::from_fn(2, |_, _| rng.random_range(-1.5..1.5));
+            let (n, push) = (normal(2, &mut rng), rng.sample::<f64, _>(StandardNormal));
+            movement(start, &(Box::new(move |_, x| policy(x)), Box::new(move |_, x| pressed(&n, push, &policy(x)))))
+        })
+        .collect();
+    of_movements(&["x", "y"], &movements)
+}
+
 /// All cases.
 pub(crate) fn all() -> Vec<Named> {
     vec![
@@ -89,5 +106,6 @@ pub(crate) fn all() -> Vec<Named> {
         case("constraints that turn, 6-D, 1 % noise", |s| noisy(turning(s), 0.01, s)),
         case("one of forty movements constrained, 3-D", |s| few_constrained(1, s)),
         case("three of forty movements constrained, 3-D, 2 % noise", |s| noisy(few_constrained(3, s), 0.02, s)),
+        case("pushed out to where the policy is fast", pushed_out),
     ]
 }
