@@ -82,22 +82,28 @@ fn in_task_space(gp: &SlopeGp, rows: &Rows, (kept, own): (&Kept, &Kept), outcome
     });
     let mut tried: Vec<(f64, Pushed)> = tried.collect();
     tried.sort_by(|(a, _), (b, _)| a.total_cmp(b));
-    let more = |rows: usize, (times, most): (usize, usize)| rows.max((times * rows).min(most));
-    let [of_rows, of_hyper, of_inducing] = [0, 1, 2].map(|at| (TIMES[at], MOST[at]));
-    let larger = SlopeGp {
-        max_rows: more(gp.max_rows, of_rows),
-        hyper_rows: more(gp.hyper_rows, of_hyper),
-        inducing_rows: more(gp.inducing_rows, of_inducing),
-        ..gp.clone()
-    };
+    let larger = larger(gp);
+    let between = SlopeGp { max_rows: gp.max_rows.max(larger.max_rows / 2), ..larger.clone() };
     let least = tried.first()?.0;
     let finalists = tried.into_iter().take(FINALISTS).take_while(|(error, _)| *error <= NEARLY * least);
-    let finals = finalists.filter_map(|(_, fewer)| {
-        let pushed = fewer.of_nearly_best(&larger, &means, kept, fewer.stretches.clone())?;
+    let on_more = |fewer: &Pushed, gp: &SlopeGp| {
+        let pushed = fewer.of_nearly_best(gp, &means, kept, fewer.stretches.clone())?;
         Some((expected(rows, &pushed.outcome, &pushed.kept, kept), pushed))
-    });
-    let best = finals.min_by(|(a, _), (b, _)| a.total_cmp(b));
-    best.filter(|(error, _)| *error < before).map(|(_, pushed)| pushed)
+    };
+    let finals = finalists.filter_map(|(_, fewer)| on_more(&fewer, &between));
+    let (_, best) = finals.min_by(|(a, _), (b, _)| a.total_cmp(b))?;
+    on_more(&best, &larger).filter(|(error, _)| *error < before).map(|(_, pushed)| pushed)
+}
+
+/// The learner for task spaces, with [`TIMES`] as many rows.
+fn larger(gp: &SlopeGp) -> SlopeGp {
+    let more = |rows: usize, at: usize| rows.max((TIMES[at] * rows).min(MOST[at]));
+    SlopeGp {
+        max_rows: more(gp.max_rows, 0),
+        hyper_rows: more(gp.hyper_rows, 1),
+        inducing_rows: more(gp.inducing_rows, 2),
+        ..gp.clone()
+    }
 }
 
 /// Expected error (S19) with `own` rows, divided by the share of the movements that have such rows. R² is not used, because slow, certain
