@@ -77,7 +77,8 @@ impl<P> Outline<P> {
                 Whitening::Inducing { shrinkage, .. } => {
                     let factor = Factor::new(jittered(among(covariance, &every, amplitudes)))?.into_matrix();
                     let triangle = shrinkage.transposed();
-                    if triangle.diagonal().iter().any(|entry| entry.abs() <= SINGULAR * triangle.amax()) {
+                    let least = SINGULAR * triangle.amax();
+                    if triangle.diagonal().iter().any(|entry| entry.abs() <= least) {
                         return None;
                     }
                     let lower = |column: usize, at: usize| {
