@@ -89,21 +89,26 @@ pub(crate) fn on_all_rows(
 }
 
 /// Models through inducing rows: of some rows if there are several times as many, with the families that were nearly the best before, and
-/// of all rows with the families that are the best then.
+/// of all rows with the families that are the best then, or that are the best through fewer inducing rows.
 fn all_induced(
     gp: &SlopeGp,
     at_most: &dyn Fn(usize) -> Option<Kept>,
     before: &Outcome,
     worth: impl Fn(&Kept, &SlopeData, &Candidate) -> bool,
 ) -> (Option<OnAllRows>, Option<OnAllRows>) {
-    let [some, all] = [FEW, MOST].map(|rows| at_most(rows * gp.inducing_rows.min(INDUCING)));
+    let (inducing, fewer) = (gp.inducing_rows, gp.inducing_rows.min(INDUCING));
+    let [some, all] = [FEW, MOST].map(|rows| at_most(rows * fewer));
     let (Some(some), Some(all)) = (some, all) else { return (None, None) };
-    if all.rows.len() < SEVERAL * some.rows.len() {
-        return (None, induced(gp, all, (before, ABOUT), worth));
+    if all.rows.len() >= SEVERAL * some.rows.len() {
+        let some = induced(some, (before, ABOUT), inducing, &worth);
+        let all = some.as_ref().and_then(|some| induced(all, (&some.outcome, 1.0), inducing, worth));
+        return (some, all);
     }
-    let some = induced(gp, some, (before, ABOUT), &worth);
-    let all = some.as_ref().and_then(|some| induced(gp, all, (&some.outcome, 1.0), worth));
-    (some, all)
+    if inducing == fewer {
+        return (None, induced(all, (before, ABOUT), inducing, worth));
+    }
+    let compared = induced(all.clone(), (before, ABOUT), fewer, |_, _, _| true);
+    (None, compared.and_then(|compared| induced(all, (&compared.outcome, 1.0), inducing, worth)))
 }
 
 /// Compares models on the kept rows, which all of them contain.
@@ -147,16 +152,15 @@ fn exact(gp: &SlopeGp, more: &Kept, thinned: &Outcome, judge: &Judge<'_>) -> Opt
     compared((kept, data), (thinned, NEARLY), fit, |_, _, _| true)
 }
 
-/// Models of these rows through inducing rows, with the families that were nearly the best before; `None` if the best model of the
+/// Models of these rows through at most `most` inducing rows, with the families that were nearly the best before; `None` if the best model of the
 /// previously selected kind is not `worth` continuing.
 fn induced(
-    gp: &SlopeGp,
     all: Kept,
     (before, nearly): (&Outcome, f64),
+    most: usize,
     worth: impl Fn(&Kept, &SlopeData, &Candidate) -> bool,
 ) -> Option<OnAllRows> {
     let data = before.data.of_others(&all, noise_weights(&all, before));
-    let most = gp.inducing_rows;
     let fit = |data: &SlopeData, all: &Kept, of, prior: &_| Candidate::induced(data, all, of, prior, most);
     compared((all, data), (before, nearly), fit, worth)
 }

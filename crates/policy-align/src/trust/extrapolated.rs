@@ -54,8 +54,7 @@ mod tests {
     }
 
     proptest! {
-        /// One of some states is `far` times as far from the goal as the others, whose policy was recorded in full, and the far one's only
-        /// up to `recorded` times theirs. It counts beyond twice the largest recorded speed.
+        /// The policy at one state is `far` times as fast as at the others, and the largest recorded speed is `recorded` times theirs.
         #[test]
         fn speeds_beyond_those_recorded_are_found(
             dim in 1usize..8, others in 1usize..60, size in 1e-6f64..1e6, far in 1.0f64..50.0, recorded in 1.0f64..50.0,
