@@ -64,12 +64,14 @@ fn mixed_units(spreads: &[f64], state: &[StateChannel]) -> Option<Finding> {
         [name] => format!("channel {name} varies {times:.0} times"),
         names => format!("channels {} vary up to {times:.0} times", names.join(", ")),
     };
-    let scales: Vec<String> = names.iter().map(|name| format!("{name}=FACTOR")).collect();
+    let scales: Vec<String> = names.iter().map(|name| format!("{name}=0.001")).collect();
     let (degrees, scales) = (names.join(","), scales.join(","));
     (times >= MIXED).then(|| Finding {
         verdict: Verdict::Doubtful,
         what: format!("{vary} as much as the others: different unit (degrees, millimetres)?"),
-        next: format!("all channels need one unit, because constraints act at right angles: --degrees {degrees} or --scale {scales}"),
+        next: format!(
+            "all channels need one unit, because constraints act at right angles: --degrees {degrees} converts degrees to radians, --scale {scales} millimetres to metres"
+        ),
     })
 }
 

@@ -4,7 +4,7 @@ use clap::Args;
 use policy_align::gp::Acting;
 use policy_align::kinematics::RobotModel;
 use policy_align::{
-    ConstraintStretch, Finding, Model, Prepared, StateChannel, TaskLinks, constraint_file, joints_in_degrees,
+    ConstraintStretch, Finding, Model, Prepared, StateChannel, Subject, TaskLinks, constraint_file, joints_in_degrees,
 };
 use serde_json::json;
 
@@ -100,7 +100,15 @@ impl Constraints {
     }
 
     fn links(&self, session: &Session, model: &Model) -> Result<Option<TaskLinks>, Failure> {
-        let Some(path) = &self.robot else { return Ok(None) };
+        let Some(path) = &self.robot else {
+            if let Some(space) = model.decisions.iter().find(|decision| decision.what == Subject::TaskSpace) {
+                let space = &space.value;
+                session.warn(&format!(
+                    "constraints acted on the {space}: --robot FILE.urdf, as for `fit`, names them there"
+                ));
+            }
+            return Ok(None);
+        };
         let text = urdf(path)?;
         let remedy = "--link NAME; a URDF with joints named like the channels";
         let refused = |reason| Failure::usage(reason, displayed(path), remedy);
