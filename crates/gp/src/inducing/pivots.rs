@@ -31,9 +31,10 @@ pub(crate) fn pivots(
     let rows = candidates(groups, CANDIDATES * most);
     let with = covariance.with(&rows, amplitudes);
     let prior = |&row: &usize| covariance.variance(row, amplitudes);
-    let candidates: Vec<Candidate> = rows.iter().map(prior).map(|variance| Candidate::new(variance, most)).collect();
+    let candidates: Vec<CandidateRow> =
+        rows.iter().map(prior).map(|variance| CandidateRow::new(variance, most)).collect();
     let least = DEPENDENT * candidates.iter().map(|candidate| candidate.variance).fold(0.0, f64::max);
-    let mut search = Search { chosen: Vec::new(), candidates };
+    let mut search = PivotedCholesky { chosen: Vec::new(), candidates };
     let mut covariances = vec![0.0; rows.len()];
     while search.chosen.len() < most {
         let Some(next) = search.largest().filter(|&at| search.candidates[at].variance > least) else { break };
@@ -43,16 +44,16 @@ pub(crate) fn pivots(
     search.chosen.iter().map(|&at| rows[at]).collect()
 }
 
-/// Pivoted Cholesky of the covariance between candidates.
-struct Search {
+/// The factorisation of the covariance between candidates.
+struct PivotedCholesky {
     /// The pivots.
     chosen: Vec<usize>,
-    candidates: Vec<Candidate>,
+    candidates: Vec<CandidateRow>,
 }
 
 /// A row that may be selected.
 #[derive(Default)]
-struct Candidate {
+struct CandidateRow {
     /// Entries of the factor for the first `known` pivots, then covariances with the later ones.
     entries: Vec<f64>,
     known: usize,
@@ -60,7 +61,7 @@ struct Candidate {
     variance: f64,
 }
 
-impl Search {
+impl PivotedCholesky {
     /// The candidate with the largest variance given all pivots.
     fn largest(&mut self) -> Option<usize> {
         loop {
@@ -83,7 +84,7 @@ impl Search {
 
     /// Conditions these candidates on all pivots.
     fn update(&mut self, open: &[usize]) {
-        let mut taken: Vec<Candidate> = open.iter().map(|&at| mem::take(&mut self.candidates[at])).collect();
+        let mut taken: Vec<CandidateRow> = open.iter().map(|&at| mem::take(&mut self.candidates[at])).collect();
         let pivots: Vec<&[f64]> = self.chosen.iter().map(|&at| &*self.candidates[at].entries).collect();
         taken.par_chunks_mut(ABREAST).for_each(|some| {
             for (count, pivot) in pivots.iter().enumerate() {
@@ -107,9 +108,9 @@ impl Search {
     }
 }
 
-impl Candidate {
+impl CandidateRow {
     fn new(variance: f64, most: usize) -> Self {
-        Candidate { entries: Vec::with_capacity(most), known: 0, variance }
+        CandidateRow { entries: Vec::with_capacity(most), known: 0, variance }
     }
 
     /// Conditions on one more pivot, given its entries.

@@ -152,8 +152,8 @@ fn exact(gp: &SlopeGp, more: &Kept, thinned: &Outcome, judge: &Judge<'_>) -> Opt
     compared((kept, data), (thinned, NEARLY), fit, |_, _, _| true)
 }
 
-/// Models of these rows through at most `most` inducing rows, with the families that were nearly the best before; `None` if the best model of the
-/// previously selected kind is not `worth` continuing.
+/// Models of these rows through at most `most` inducing rows, with the families that were nearly the best before; `None` if the best model
+/// of the previously selected kind is not `worth` continuing.
 fn induced(
     all: Kept,
     (before, nearly): (&Outcome, f64),
