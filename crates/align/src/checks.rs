@@ -20,7 +20,8 @@ pub(crate) fn check(demonstrations: &Demonstrations) -> Vec<Warning> {
     let transposed = (2 * longest < dim).then_some(Warning::LooksTransposed { dim, n_samples: longest });
     let single = trajectories.iter().enumerate().flat_map(|(trajectory, movement)| {
         let still = stands_still(movement.states()).then_some(Warning::StandsStill { trajectory });
-        let long = long_steps(movement.states()).into_iter().max_by(|a, b| a.times.total_cmp(&b.times));
+        let long =
+            long_steps(movement.states(), movement.times()).into_iter().max_by(|a, b| a.times.total_cmp(&b.times));
         let long = long.map(|step| Warning::LongStep { trajectory, sample: step.sample, times: step.times });
         [still, long].into_iter().flatten()
     });

@@ -27,16 +27,21 @@ pub struct LongStep {
 }
 
 /// The steps of a movement (n, N) that are over ten times the median of its nonzero steps, and over ten times most of
-/// the seven steps around them, in order.
+/// the seven steps around them, in order. If samples are unevenly spaced, at `times` (N), the length of a step that takes more than the
+/// median time is divided by their quotient, because samples are missing there.
 ///
 /// Speeds may differ by more than that between start and end, and where a constraint gives way; but these do not make a
 /// single step longer than all its neighbours.
-pub fn long_steps(states: &DMatrix<f64>) -> Vec<LongStep> {
+pub fn long_steps(states: &DMatrix<f64>, times: Option<&[f64]>) -> Vec<LongStep> {
+    let seconds = times.map(|times| times.array_windows().map(|[from, to]| to - from).collect::<Vec<f64>>());
+    let usual = seconds.as_ref().and_then(|seconds| upper_median(seconds.clone()));
+    let times_as_long =
+        |i: usize| seconds.as_ref().zip(usual).map_or(1.0, |(seconds, usual)| (seconds[i] / usual).max(1.0));
     let squared = |i: usize| {
         let (here, next) = (states.column(i), states.column(i + 1));
         here.iter().zip(next.iter()).map(|(a, b)| (b - a).powi(2)).sum::<f64>()
     };
-    let steps: Vec<f64> = (0..states.ncols().saturating_sub(1)).map(|i| squared(i).sqrt()).collect();
+    let steps: Vec<f64> = (0..states.ncols().saturating_sub(1)).map(|i| squared(i).sqrt() / times_as_long(i)).collect();
     let Some(usual) = upper_median(steps.iter().copied().filter(|&step| step > 0.0).collect()) else {
         return Vec::new();
     };

@@ -67,6 +67,14 @@ impl Times {
         }
     }
 
+    /// The stamps (N) of unevenly spaced samples; `None` if they are evenly spaced.
+    pub fn uneven(&self) -> Option<&[f64]> {
+        match self {
+            Times::Even { .. } => None,
+            Times::Stamped(stamps) => Some(stamps),
+        }
+    }
+
     /// The time stamps, mutable.
     pub fn stamps_mut(&mut self) -> &mut Vec<f64> {
         if let Times::Even { .. } = self {

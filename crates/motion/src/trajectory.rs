@@ -175,10 +175,7 @@ impl Trajectory {
 
     /// Time stamps of the samples, (N), in seconds; `None` if they are evenly spaced.
     pub fn times(&self) -> Option<&[f64]> {
-        match &*self.times {
-            Times::Even { .. } => None,
-            Times::Stamped(stamps) => Some(stamps),
-        }
+        self.times.uneven()
     }
 
     /// Seconds from sample `from` to sample `to`, which must not be before it.

@@ -17,7 +17,7 @@ pub struct PrepareOptions {
     pub velocities: VelocityUse,
     /// Smoothing of positions (`--smooth`).
     pub smoothing: Smoothing,
-    /// Whether episodes are cut at steps that are far too long (`--jumps`).
+    /// Whether single samples far from their neighbours are interpolated, and episodes cut at steps that are far too long (`--jumps`).
     pub jumps: Repair,
     /// Whether angles that jump by a whole turn are unwrapped, and quaternions that change sign get one sign (`--wraps`).
     pub wraps: Repair,

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
-use motion::{Channel, Episode, Finding, Labels, Recordings, Source, Subject, Verdict};
+use motion::{Channel, Episode, Finding, Labels, Recordings, Source, Subject, Times, Verdict};
 use nalgebra::{DMatrix, DVector};
 use prepare::{
     PrepareError, PrepareOptions, Prepared, Repair, Smoothing, VelocitySource, VelocityUse, prepare, trim_still,
@@ -280,14 +280,17 @@ fn copied_still_and_short_episodes_are_left_out() {
         }
     }));
     assert_eq!((short.left_out[0].episode.as_str(), short.left_out[0].why.as_str()), ("e5", "only 1 sample"));
-    // With a spike near the start, the part before it is too short to learn from, and the spike itself is dropped.
-    let spike = prepared(&changed(|episode| {
+    // With a jump and one back near the start, the parts before and between are too short to learn from.
+    let jumps = prepared(&changed(|episode| {
         if episode.name == "e2" {
-            episode.positions.column_mut(2).add_scalar_mut(3.0);
+            episode.positions.columns_mut(2, 2).add_scalar_mut(3.0);
         }
     }));
-    let left_out: Vec<_> = spike.left_out.iter().map(|left_out| (&*left_out.episode, &*left_out.why)).collect();
-    assert_eq!(left_out, [("e2", "only 2 samples beside a jump"), ("e2 from sample 2", "only 1 sample beside a jump")]);
+    let left_out: Vec<_> = jumps.left_out.iter().map(|left_out| (&*left_out.episode, &*left_out.why)).collect();
+    assert_eq!(
+        left_out,
+        [("e2", "only 2 samples beside a jump"), ("e2 from sample 2", "only 2 samples beside a jump")]
+    );
 }
 
 proptest! {
@@ -389,10 +392,79 @@ fn a_jump_is_cut() {
     assert_eq!((&*jump.episodes[2], &*jump.episodes[3]), ("e2", "e2 from sample 15"));
     let lengths: Vec<_> = jump.demonstrations.trajectories()[2..4].iter().map(motion::Trajectory::n_samples).collect();
     assert_eq!(lengths, [15, 25]);
-    // A single outlier is dropped; the samples before and after it stay.
-    let spike = prepared(&changed(|episode| episode.positions.column_mut(20).add_scalar_mut(3.0)));
-    assert_eq!(spike.episodes.len(), 24);
-    assert_eq!(verdict(&spike, "12 of 12 episodes jump"), Verdict::Doubtful);
+    // A step that takes as many times longer is no jump: samples are missing.
+    let gap = prepared(&changed(|episode| {
+        let keep: Vec<usize> = (0..SAMPLES).filter(|i| !(4..24).contains(i)).collect();
+        episode.times = Times::Stamped(keep.iter().map(|&i| episode.times.stamps()[i]).collect());
+        episode.positions = episode.positions.select_columns(&keep);
+        episode.velocities = episode.velocities.as_ref().map(|velocities| velocities.select_columns(&keep));
+    }));
+    assert_eq!(gap.episodes.len(), 12);
+    assert_eq!(verdict(&gap, "samples are missing"), Verdict::Good);
+    assert!(!says(&gap, "jump"));
+}
+
+proptest! {
+    /// Single positions and velocities far from their neighbours are interpolated: nearly the recordings without them.
+    #[test]
+    fn glitches_are_interpolated(at in 4..SAMPLES - 4, size in 1.0..50.0f64, of in 0..3usize) {
+        let glitch = changed(|episode| {
+            if of != 1 {
+                episode.positions.column_mut(at).add_scalar_mut(size);
+            }
+            if of != 0 {
+                episode.velocities.as_mut().unwrap().column_mut(at).add_scalar_mut(-size);
+            }
+        });
+        let found = prepared(&glitch);
+        prop_assert_eq!(verdict(&found, "far from the samples before and after"), Verdict::Good);
+        prop_assert!(found.findings.iter().all(|finding| finding.verdict == Verdict::Good), "{:?}", found.findings);
+        let plain = recordings();
+        for (movement, episode) in found.demonstrations.trajectories().iter().zip(&plain.episodes) {
+            prop_assert!((movement.states() - &episode.positions).amax() < 1e-3);
+            prop_assert!((movement.velocities().unwrap() - episode.velocities.as_ref().unwrap()).amax() < 1e-3);
+        }
+        let keep = PrepareOptions { jumps: Repair::Keep, ..PrepareOptions::default() };
+        let kept = prepare(&glitch, &keep).unwrap();
+        prop_assert!(kept.decisions.iter().all(|decision| decision.what != Subject::Jumps));
+    }
+
+    /// A velocity that changes once and remains is no glitch: a constraint has switched.
+    #[test]
+    fn switches_are_no_glitches(at in 2..SAMPLES - 2, factor in -20.0..20.0f64) {
+        let switch = changed(|episode| {
+            let velocities = episode.velocities.as_mut().unwrap();
+            velocities.columns_mut(at, SAMPLES - at).scale_mut(factor);
+            for i in 1..SAMPLES {
+                let step = (velocities.column(i - 1) + velocities.column(i)) * (0.5 * STEP);
+                let next = episode.positions.column(i - 1) + step;
+                episode.positions.set_column(i, &next);
+            }
+        });
+        prop_assert!(!says(&self::prepared(&switch), "far from the samples"));
+    }
+
+    /// A row of a rotation matrix beside a position is no quaternion, nor is a window that is shifted from the quaternion.
+    #[test]
+    fn unit_vectors_beside_other_channels_are_no_quaternion(height in 0.01..0.3f64, noise in prop::sample::select(vec![0.0, 1e-3])) {
+        let row = moving(&["z", "r11", "r12", "r13"], |k, t| {
+            let (tilt, turn) = (0.4 + 0.1 * k as f64, 0.7 * k as f64 + t);
+            let r = [tilt.sin() * turn.cos(), tilt.sin() * turn.sin(), tilt.cos()];
+            let x = DVector::from_vec(vec![height * (1.0 + 0.5 * (2.0 * t).sin()), r[0], r[1], r[2]]);
+            (x, DVector::from_vec(vec![height * (2.0 * t).cos(), -r[1], r[0], 0.0]))
+        });
+        prop_assert!(!says(&self::prepared(&row), "unit quaternion"));
+        let shifted = moving(&["z", "qw", "qx", "qy", "qz"], |k, t| {
+            let (s, c) = (0.5 + 0.15 * k as f64 + 0.2 * t).sin_cos();
+            let off = noise * (1e4 * (k as f64 + t)).sin();
+            let (up, side) = (0.3 * t.sin()).sin_cos();
+            let x = DVector::from_vec(vec![height * (1.0 + t), c + off, 0.6 * s, 0.8 * s * side, 0.8 * s * up]);
+            (x, DVector::zeros(5))
+        });
+        let ignored = PrepareOptions { velocities: VelocityUse::Ignored, ..PrepareOptions::default() };
+        let found = prepare(&shifted, &ignored).unwrap();
+        prop_assert!(says(&found, "qw, qx, qy, qz are a unit quaternion") && !says(&found, "z, qw"), "{:?}", found.findings);
+    }
 }
 
 #[test]

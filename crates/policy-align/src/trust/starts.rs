@@ -37,7 +37,7 @@ pub(crate) fn slow_starts(movements: &[Vec<Along>], rows: &Rows) -> Option<Findi
             "movements begin too slowly for the policy, by {} in their first tenth: from rest?",
             percent_of_all(missing)
         ),
-        next: "begin to record when the hand has its speed, or cut the beginnings off".to_owned(),
+        next: "begin to record when the hand has its speed, or cut the beginnings off (--trim-still)".to_owned(),
     })
 }
 

@@ -18,7 +18,7 @@ pub(crate) fn cut(episodes: &mut Vec<Episode>, channels: &[Channel], notes: &mut
     *episodes = episodes
         .drain(..)
         .flat_map(|episode| {
-            let jumps = long_steps(&episode.positions);
+            let jumps = long_steps(&episode.positions, episode.times.uneven());
             let Some(jump) = jumps.first() else { return vec![episode] };
             cut += 1;
             first.get_or_insert_with(|| described(&episode, jump, channels));

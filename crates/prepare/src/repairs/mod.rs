@@ -3,6 +3,7 @@
 pub(crate) mod agreement;
 pub(crate) mod duplicates;
 pub(crate) mod episodes;
+pub(crate) mod glitches;
 pub(crate) mod jumps;
 pub(crate) mod labels;
 pub(crate) mod lag;

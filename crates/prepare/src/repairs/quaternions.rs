@@ -16,19 +16,45 @@ const SPHERE: f64 = 0.5;
 /// A step longer than this is a change of sign; opposite quaternions are 2 apart.
 const FLIP: f64 = 1.0;
 
+/// If the norm of three channels is nearer to 1 than this share of the deviation of four, the fourth is another quantity: a position beside a
+/// row of a rotation matrix.
+const NEEDLESS: f64 = 0.5;
+
 /// Reports channels that are unit quaternions, and gives each orientation a consistent sign.
 pub(crate) fn align(episodes: &mut [Episode], channels: &[Channel], repair: Repair, notes: &mut Notes) {
-    let mut first = 0;
-    while first + 4 <= channels.len() {
-        if !is_quaternion(episodes, first) {
-            first += 1;
-            continue;
-        }
+    for first in quaternions(episodes, channels.len()) {
         let flips = if repair == Repair::Auto { same_signs(episodes, first) } else { 0 };
         let names: Vec<&str> = channels[first..first + 4].iter().map(|channel| channel.name.as_str()).collect();
         report_signs(&names.join(", "), flips, notes);
-        first += 4;
     }
+}
+
+/// The first channel of each quaternion, in order. Of overlapping windows the one counts whose norm is nearest to 1.
+fn quaternions(episodes: &[Episode], n_channels: usize) -> Vec<usize> {
+    let windows = 0..(n_channels + 1).saturating_sub(4);
+    let mut candidates: Vec<(f64, usize)> = windows
+        .filter(|&first| is_quaternion(episodes, first))
+        .map(|first| (deviation(episodes, first, None), first))
+        .collect();
+    candidates.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut found: Vec<usize> = Vec::new();
+    for (_, first) in candidates {
+        if found.iter().all(|other| first.abs_diff(*other) >= 4) {
+            found.push(first);
+        }
+    }
+    found.sort_unstable();
+    found
+}
+
+/// Root mean square of |q| − 1 for four channels, or for three of them.
+fn deviation(episodes: &[Episode], first: usize, without: Option<usize>) -> f64 {
+    let columns = || episodes.iter().flat_map(|episode| episode.positions.column_iter());
+    let norm = |x: DVectorView<'_, f64>| {
+        (0..4).filter(|&at| Some(at) != without).map(|at| x[first + at].powi(2)).sum::<f64>().sqrt()
+    };
+    let squares: f64 = columns().map(|x| (norm(x) - 1.0).powi(2)).sum();
+    (squares / columns().count() as f64).sqrt()
 }
 
 fn report_signs(names: &str, flips: usize, notes: &mut Notes) {
@@ -55,7 +81,10 @@ fn is_quaternion(episodes: &[Episode], first: usize) -> bool {
     });
     let columns = || episodes.iter().flat_map(|episode| episode.positions.column_iter());
     let is_unit = |q: DVectorView<'_, f64>| (q.rows(first, 4).norm() - 1.0).abs() <= UNIT;
-    moves && (columns().all(is_unit) || is_noisy_quaternion(columns().map(|x| x.fixed_rows::<4>(first).into_owned())))
+    let needless = |at: usize| deviation(episodes, first, Some(at)) < NEEDLESS * deviation(episodes, first, None);
+    moves
+        && (columns().all(is_unit) || is_noisy_quaternion(columns().map(|x| x.fixed_rows::<4>(first).into_owned())))
+        && !(0..4).any(needless)
 }
 
 fn is_noisy_quaternion(all: impl Iterator<Item = Vector4<f64>> + Clone) -> bool {

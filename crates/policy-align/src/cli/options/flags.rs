@@ -132,7 +132,7 @@ pub(crate) struct PrepareFlags {
     /// Smoothing: auto, off, or a window in samples (9) or seconds (0.2s)
     #[arg(long, value_name = "WINDOW")]
     smooth: Option<String>,
-    /// Jumps: auto (split episodes there) or keep
+    /// Jumps: auto (interpolate single samples, else split) or keep
     #[arg(long, value_name = "REPAIR", hide_possible_values = true, value_parser = words::<Repair>())]
     jumps: Option<String>,
     /// Wraps and signs of quaternions found: auto (undo them) or keep
