@@ -22,25 +22,17 @@ const BLURRED: f64 = 1.0;
 /// joint that moves no constraint has no learnt unit.
 const SIMILAR: f64 = 2.0;
 const MIXED: f64 = 50.0;
-/// If no units are learnt, usual ones must leave at most this share of the left-out error.
+/// Units must leave at most this share of the left-out error in those recorded. Where constraints act on groups of channels, a factor
+/// between the groups changes the error a little, by chance.
 const LEFT: f64 = 0.5;
 
-/// Units that are tried.
-#[derive(Default)]
-pub(super) struct Candidates {
-    /// Factor on each channel, (n) each.
-    factors: Vec<DVector<f64>>,
-    /// Maximum left-out error, as a share of that in the best units so far.
-    left: f64,
-}
-
-/// Units that the constraints imply or that are usual; none if the user chose the units, or if they hardly matter.
+/// Units that the constraints imply or that are usual, as factors on the channels, (n) each; none if the user chose the units, or if they hardly matter.
 pub(super) fn candidates(
     prepared: &Prepared,
     rows: &Rows,
     readings: &AutoFit,
     options: &FitOptions,
-) -> Result<Candidates, FitError> {
+) -> Result<Vec<DVector<f64>>, FitError> {
     let reading = options.reading.unwrap_or(readings.reading());
     let constrained = !matches!(reading, Hypothesis::Free | Hypothesis::TooFew);
     let report = readings.slope().report();
@@ -53,7 +45,7 @@ pub(super) fn candidates(
         || report.is_nearly_exact()
         || options.learner == LearnerChoice::Direct
     {
-        return Ok(Candidates::default());
+        return Ok(Vec::new());
     }
     let family = report.family;
     let (families, push_test) = (vec![family], PushTest::Fit);
@@ -64,7 +56,6 @@ pub(super) fn candidates(
     let spread = |axis| standard_deviation(states.row(axis).iter().copied());
     let alike = DVector::from_fn(prepared.state.len(), |axis, _| spread(axis).recip());
     let similar = usual_units_near(&alike, SIMILAR).into_iter().filter(|usual| usual.max() > MIXED * usual.min());
-    let left = if learnt.is_some() { 1.0 } else { LEFT };
     let near = learnt.iter().flat_map(|learnt| usual_units_near(learnt, BLURRED));
     let recorded = DVector::repeat(prepared.state.len(), 1.0);
     let mut distinct: Vec<DVector<f64>> = Vec::new();
@@ -73,7 +64,7 @@ pub(super) fn candidates(
             distinct.push(factors);
         }
     }
-    Ok(Candidates { factors: distinct, left })
+    Ok(distinct)
 }
 
 fn rescaled(prepared: &Prepared, factors: &DVector<f64>, options: &FitOptions) -> Result<Prepared, FitError> {
@@ -88,7 +79,7 @@ const KEPT: usize = 20_000;
 /// The search for units uses less information than a whole fit, and rotating constraints mislead it. `None` stands for the recorded units.
 pub(super) fn best(
     recorded: &Prepared,
-    Candidates { factors, left }: Candidates,
+    candidates: Vec<DVector<f64>>,
     options: &FitOptions,
     (rows, readings): (Rows, AutoFit),
     fit: impl Fn(&Prepared) -> Result<(Rows, AutoFit), FitError>,
@@ -96,7 +87,7 @@ pub(super) fn best(
     let error = |readings: &AutoFit| 1.0 - readings.slope().report().r_squared;
     let (as_recorded, all) = (error(&readings), rows.len());
     let (mut least, mut units, mut kept) = (as_recorded, None, Some((rows, readings)));
-    for factors in factors {
+    for factors in candidates {
         let mut prepared = rescaled(recorded, &factors, options)?;
         if all > KEPT {
             // Two large fits would take twice the memory.
@@ -104,7 +95,7 @@ pub(super) fn best(
         }
         let (rows, readings) = fit(&prepared)?;
         let now = error(&readings);
-        if now < left * least {
+        if now < least.min(LEFT * as_recorded) {
             prepared.decisions.extend(decisions(recorded, &factors, (as_recorded, now)));
             (least, units, kept) = (now, Some(prepared), Some((rows, readings)));
         }
