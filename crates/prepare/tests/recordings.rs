@@ -429,6 +429,29 @@ proptest! {
         prop_assert!(kept.decisions.iter().all(|decision| decision.what != Subject::Jumps));
     }
 
+    /// A constant that is added to velocities is found and subtracted; if they are in another unit as well, only the unit is repaired.
+    #[test]
+    fn velocities_with_a_constant_offset(x in prop_oneof![-0.5..-0.1f64, 0.1..0.5f64], y in -0.5..0.5f64, factor in prop::sample::select(vec![1.0, 1000.0])) {
+        let offset = changed(|episode| {
+            let velocities = episode.velocities.as_mut().unwrap();
+            velocities.row_mut(0).add_scalar_mut(x);
+            velocities.row_mut(1).add_scalar_mut(y);
+            *velocities *= factor;
+        });
+        let found = self::prepared(&offset);
+        let words = "recorded velocities exceed the steps by a constant (x by";
+        if factor != 1.0 {
+            prop_assert!(!says(&found, words), "{:?}", found.findings);
+            return Ok(());
+        }
+        prop_assert_eq!(verdict(&found, words), Verdict::Doubtful);
+        let plain = recordings();
+        for (movement, episode) in found.demonstrations.trajectories().iter().zip(&plain.episodes) {
+            let error = (movement.velocities().unwrap() - episode.velocities.as_ref().unwrap()).row(0).amax();
+            prop_assert!(error < 1e-3, "{error}");
+        }
+    }
+
     /// A velocity that changes once and remains is no glitch: a constraint has switched.
     #[test]
     fn switches_are_no_glitches(at in 2..SAMPLES - 2, factor in -20.0..20.0f64) {

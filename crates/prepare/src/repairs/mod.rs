@@ -10,4 +10,5 @@ pub(crate) mod lag;
 pub(crate) mod quaternions;
 pub(crate) mod stamps;
 pub(crate) mod velocities;
+pub(crate) mod velocity_offset;
 pub(crate) mod wraps;

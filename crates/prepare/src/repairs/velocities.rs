@@ -5,7 +5,7 @@ use crate::notes::Notes;
 use crate::numbers::{percent, short};
 use crate::options::{PrepareOptions, VelocityUse};
 use crate::repairs::agreement::Agreement;
-use crate::repairs::lag;
+use crate::repairs::{lag, velocity_offset};
 use crate::samples::noise::Noise;
 
 use crate::repairs::stamps::{SLOW, UNITS, usual_step};
@@ -14,6 +14,8 @@ use crate::repairs::stamps::{SLOW, UNITS, usual_step};
 const AGREE: f64 = 1.25;
 /// Velocities are unrelated to the steps if they explain less than this share of the steps' squares.
 const UNRELATED: f64 = 0.5;
+/// Without a constant offset, velocities must leave at most this share of what they do not explain of the steps.
+const OFFSET: f64 = 0.5;
 /// A factor is attributed to a common mistake if it is within this tolerance.
 const NEAR: f64 = 0.1;
 /// Maximum residual of the velocities, in multiples of the noise.
@@ -63,7 +65,11 @@ pub(crate) fn decide(
         discard(episodes);
         return Agreement::None;
     }
-    let fit = Steps::of(episodes, noise);
+    let mut fit = Steps::of(episodes, noise);
+    if let Some((offset, without)) = without_offset(episodes, &fit, noise) {
+        velocity_offset::report(&offset, channels, notes);
+        fit = without;
+    }
     if fit.explained < UNRELATED {
         discard(episodes);
         let explained = percent(fit.explained.max(0.0));
@@ -91,6 +97,18 @@ pub(crate) fn decide(
         rescale(episodes, &fit, channels, notes);
     }
     Agreement::Own
+}
+
+/// Subtracts a constant from the velocities if they then agree with the steps much better than in any unit; returns it and the new fit.
+fn without_offset(episodes: &mut [Episode], fit: &Steps, noise: &Noise) -> Option<(DVector<f64>, Steps)> {
+    let offset = velocity_offset::of(episodes)?;
+    velocity_offset::add(episodes, &-&offset);
+    let without = Steps::of(episodes, noise);
+    if without.agree(1.0) && 1.0 - without.explained < OFFSET * (1.0 - fit.explained) {
+        return Some((offset, without));
+    }
+    velocity_offset::add(episodes, &offset);
+    None
 }
 
 /// Leaves the positions alone.
