@@ -60,6 +60,15 @@ impl<'a> Input<'a> {
         }
     }
 
+    /// The layout of arrays that would exchange rows and columns, as a value of `--samples-are`.
+    pub(crate) fn other_layout(&self) -> &'static str {
+        let usual = if self.columns_first { SamplesAre::Columns } else { SamplesAre::Rows };
+        match self.options.samples_are.unwrap_or(usual) {
+            SamplesAre::Rows => "columns",
+            SamplesAre::Columns => "rows",
+        }
+    }
+
     /// Requests memory before it is allocated. Unless the file is trusted, all that it unpacks to is at most 64 times its
     /// size.
     pub(crate) fn charge(&self, bytes: u64) -> Result<(), ReadError> {

@@ -25,7 +25,8 @@ pub(crate) fn joined<P: AsRef<Path>>(
 }
 
 /// Appends the episodes of another file, or of another piece of the last one.
-fn join(joined: &mut RawRecordings, more: RawRecordings, file: &str, is_last: bool) -> Result<(), ReadError> {
+fn join(joined: &mut RawRecordings, mut more: RawRecordings, file: &str, is_last: bool) -> Result<(), ReadError> {
+    more.order_as(&joined.channels);
     if joined.channels != more.channels {
         let what = format!("channels differ: {} here, {} before", more.names().join(", "), joined.names().join(", "));
         let remedy = "--state with channels that all files have, or files of one kind";

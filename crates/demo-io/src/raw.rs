@@ -66,6 +66,22 @@ impl RawRecordings {
         self.channels.iter().map(|channel| channel.name.clone()).collect()
     }
 
+    /// Brings the channels into the order of `channels`, if they are the same.
+    pub(crate) fn order_as(&mut self, channels: &[Channel]) {
+        let n = channels.len();
+        if self.channels == channels || self.channels.len() != n {
+            return;
+        }
+        let at = |channel: &Channel| self.channels.iter().position(|own| own == channel);
+        let Some(order) = channels.iter().map(at).collect::<Option<Vec<usize>>>() else { return };
+        for episode in &mut self.episodes {
+            for numbers in [&mut episode.positions, &mut episode.velocities] {
+                *numbers = numbers.chunks_exact(n).flat_map(|sample| order.iter().map(|&at| sample[at])).collect();
+            }
+        }
+        self.channels = channels.to_vec();
+    }
+
     /// Converts to the type that other crates use.
     pub(crate) fn checked(self) -> Recordings {
         let RawRecordings { channels, episodes, findings, word, .. } = self;

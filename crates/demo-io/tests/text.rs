@@ -445,7 +445,7 @@ fn lines_may_be_channels() {
     let timed = ReadOptions { dt: None, time: Some("0".to_owned()), ..every.clone() };
     let found = parsed("a.txt", "0 2 4\n5 6 7\n", &timed).unwrap();
     assert_eq!((names(&found), found.time_step()), (vec!["x1"], 2.0));
-    refused("a.txt", text, &plain(), "NoRoles", &["--samples-are columns if each line is a channel", "--state 2,3"]);
+    refused("a.txt", text, &plain(), "NoRoles", &["--samples-are columns if each line is a channel", "--state 0-3 --dt"]);
     refused("a.txt", "1 3 5\n2 a 6\n", &every, "NotANumber", &["'a'", "line 2, column 1"]);
 }
 
@@ -465,4 +465,51 @@ fn a_repeated_header_is_named_with_its_line() {
             refused("a.csv", format!("{file}{file}"), &options, "NotANumber", &words);
         }
     }
+}
+
+/// Files whose columns have the same names in another order are one recording.
+#[test]
+fn columns_in_another_order_are_sorted_by_name() {
+    let files = Files::new();
+    let first = files.add("a.csv", "t,x,y,vx,vy\n0,1,10,3,30\n0.1,2,20,4,40\n0.2,3,21,5,41\n");
+    let second = files.add("b.csv", "t,y,x,vy,vx\n0,10,1,30,3\n0.1,20,2,40,4\n0.2,21,4,41,5\n");
+    let found = demo_io::read_all(&[first, second], &ReadOptions::default(), &mut |_| ()).unwrap();
+    let names: Vec<&str> = found.state.iter().map(|channel| channel.name.as_str()).collect();
+    assert_eq!(names, ["x", "y"]);
+    for episode in &found.episodes {
+        assert_eq!(episode.positions.column(0).as_slice(), [1.0, 10.0]);
+        assert_eq!(episode.velocities.as_ref().unwrap().column(1).as_slice(), [4.0, 40.0]);
+    }
+    assert_eq!(found.episodes[1].positions.column(2).as_slice(), [4.0, 21.0]);
+}
+
+/// Without a header the hint names flags that work for this file.
+#[test]
+fn hints_without_header_can_be_followed() {
+    let files = Files::new();
+    let table = |name: &str, columns: &dyn Fn(f64) -> Vec<f64>| {
+        let line = |k: i32| columns(f64::from(k)).iter().map(f64::to_string).collect::<Vec<_>>().join(" ");
+        files.add(name, (0..20).map(line).collect::<Vec<_>>().join("\n"))
+    };
+    let hint = |file: &std::path::Path| read_with(file, &ReadOptions::default()).unwrap_err().to_string();
+    let (sin, cos) = (|k: f64| (0.7 * k).sin(), |k: f64| (0.7 * k).cos());
+    let stamped = table("stamped.txt", &|k| vec![0.01 * k, sin(k), cos(k)]);
+    assert!(hint(&stamped).contains("--state 1-2 --time 0"), "{}", hint(&stamped));
+    let last = table("last.txt", &|k| vec![sin(k), cos(k), 7.0 + 0.01 * k]);
+    assert!(hint(&last).contains("--state 0-1 --time 2"), "{}", hint(&last));
+    let bare = table("bare.txt", &|k| vec![sin(k), cos(k)]);
+    assert!(hint(&bare).contains("--state 0-1 --dt SECONDS"), "{}", hint(&bare));
+    let options = ReadOptions { state: vec!["1-2".to_owned()], time: Some("0".to_owned()), ..ReadOptions::default() };
+    assert_eq!(read_with(&stamped, &options).unwrap().episodes[0].positions.shape(), (2, 20));
+}
+
+/// "current" before a position is no electric current.
+#[test]
+fn current_positions_are_state() {
+    let files = Files::new();
+    let lines: String = (0..9).map(|k| format!("{},{},{},{}\n", 0.1 * f64::from(k), k, k * k, 3 + k % 2)).collect();
+    let file = files.add("a.csv", format!("t,current_pos_x,current_pos_y,motor_current\n{lines}"));
+    let found = read_with(&file, &ReadOptions::default()).unwrap();
+    let names: Vec<&str> = found.state.iter().map(|channel| channel.name.as_str()).collect();
+    assert_eq!(names, ["current_pos_x", "current_pos_y"]);
 }

@@ -24,6 +24,9 @@ const WORDS: [(&str, &[&str]); 12] = [
     ("wraps", &["auto", "keep"]),
 ];
 
+/// Flags whose values name columns, which are texts also if they are numbers.
+const COLUMNS: [&str; 6] = ["context", "episode", "ignore", "state", "time", "velocity"];
+
 /// Members of the library's documents that contain sentences: of findings, decisions, left-out episodes and warnings.
 const SENTENCES: [&str; 5] = ["what", "value", "why", "next", "warnings"];
 
@@ -51,7 +54,11 @@ pub(crate) fn in_python(text: &str) -> String {
         let (name, after) = flag.split_at(length);
         rest = if ARGUMENTS.split(' ').any(|known| known == name) {
             out.push_str(&argument(name));
-            value(name, after, &mut out)
+            let after = value(name, after, &mut out);
+            if after.starts_with(" --") {
+                out.push(',');
+            }
+            after
         } else {
             out.push_str("--");
             flag
@@ -104,7 +111,7 @@ fn value<'a>(name: &str, after: &'a str, out: &mut String) -> &'a str {
     let plain = word.trim_end_matches([',', ';', '.', ':']);
     let is_number = plain.starts_with(|c: char| c.is_ascii_digit());
     let is_name = plain.starts_with('\'') || plain.len() > 1 && plain.chars().all(|c| c.is_ascii_uppercase());
-    if is_number && plain.parse::<f64>().is_err() {
+    if is_number && (COLUMNS.contains(&name) || plain.parse::<f64>().is_err()) {
         out.extend(["\"", plain, "\""]);
     } else if is_number || is_name {
         out.push_str(plain);

@@ -261,10 +261,11 @@ fn refuse_other_kinds(array: &ArraySpec, place: &str) -> Result<(), ReadError> {
     Err(ReadError::Type(Fault::new(format!("'{name}' holds {what}"), place, remedy)))
 }
 
-pub(crate) fn too_many_channels(n: usize, place: &str) -> Result<(), ReadError> {
+pub(crate) fn too_many_channels(n: usize, exchanged: &str, place: &str) -> Result<(), ReadError> {
     if n <= MOST_CHANNELS {
         return Ok(());
     }
     let what = format!("{n} channels of state, more than {MOST_CHANNELS}");
-    Err(ReadError::TooLarge(Fault::new(what, place, "--state with another array, or --samples-are columns")))
+    let remedy = format!("--state with another array, or --samples-are {exchanged}");
+    Err(ReadError::TooLarge(Fault::new(what, place, remedy)))
 }

@@ -33,7 +33,7 @@ pub(crate) fn dimensions(
     match input.samples_are() {
         None if second > first && first > 0 => {
             let mut shape = array.shape.clone();
-            let (exchanged, right) = if input.columns_first { ("rows", "columns") } else { ("columns", "rows") };
+            let (exchanged, right) = (input.other_layout(), if input.columns_first { "columns" } else { "rows" });
             if input.columns_first {
                 shape.reverse();
             }
@@ -53,7 +53,7 @@ pub(crate) fn dimensions(
 /// Reorders numbers so that they follow one another sample by sample.
 pub(crate) fn stack(array: &ArraySpec, numbers: Vec<f64>, input: &Input<'_>, place: &str) -> Result<Stack, ReadError> {
     let (episodes, samples, channels) = dimensions(array, input, place)?;
-    too_many_channels(channels, place)?;
+    too_many_channels(channels, input.other_layout(), place)?;
     if channels == 0 {
         let what = format!("'{}' has shape ({}): no channel", array.name, shape_text(&array.shape));
         return Err(ReadError::Empty(Fault::new(what, place, "--state with another array")));

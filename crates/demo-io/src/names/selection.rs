@@ -3,10 +3,15 @@
 /// Patterns of quantities that a robot measures besides its state; they are state only if the user says so.
 const MEASURED: [&str; 6] = ["*effort*", "*torque*", "*force*", "*wrench*", "*current*", "*temperature*"];
 
+/// In these, "current" is what is now, not an electric current.
+const ACTUAL: [&str; 5] = ["*current_*pos*", "*current_*ori*", "*current_*quat*", "*current_*rot*", "*current_*vel*"];
+
 /// Whether a name, without the groups before it, is that of a measured quantity that is not state, or matches one of `others`.
 pub(crate) fn is_not_state(name: &str, others: &[&str]) -> bool {
     let name = name.rsplit('/').next().unwrap_or(name).to_ascii_lowercase();
-    MEASURED.iter().chain(others).any(|pattern| glob(pattern, &name))
+    let is_actual = ACTUAL.iter().any(|pattern| glob(pattern, &name));
+    let measured = MEASURED.iter().filter(|pattern| !(is_actual && **pattern == "*current*"));
+    measured.chain(others).any(|pattern| glob(pattern, &name))
 }
 
 /// The indices that patterns select, in the order of the patterns and, within a pattern, of the names; without

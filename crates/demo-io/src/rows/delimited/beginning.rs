@@ -49,6 +49,17 @@ impl<'a> Beginning<'a> {
         self.header.is_none() && input.options.samples_are == Some(SamplesAre::Columns)
     }
 
+    /// The first of `n` columns whose numbers rise from line to line, as stamps do.
+    fn rising(&self, n: usize) -> Option<usize> {
+        let Self { dialect, head, .. } = self;
+        let rises = |column: &usize| {
+            let numbers: Result<Vec<f64>, _> =
+                head.iter().map(|(_, record)| dialect.fields(record).number(*column)).collect();
+            numbers.is_ok_and(|numbers| numbers.len() > 2 && numbers.array_windows().all(|[a, b]| a < b))
+        };
+        [0, n - 1].into_iter().find(rises)
+    }
+
     /// A table that contains the first records.
     pub(super) fn table(&self, input: &Input<'_>) -> Result<Table, ReadError> {
         let Self { dialect, header, head, .. } = self;
@@ -64,11 +75,18 @@ impl<'a> Beginning<'a> {
             let n = first.len();
             let what =
                 format!("there is no header: line {first_line} begins with numbers, and {n} columns have no name");
-            let remedy = "--state 2,3 --time 1 (columns count from 0; also --episode 0, --velocity 4,5), or write a first line with names";
+            let roles = match self.rising(n) {
+                Some(0) if n > 1 => format!("--state 1-{} --time 0", n - 1),
+                Some(last) if last > 0 && last == n - 1 => format!("--state 0-{} --time {last}", n - 2),
+                _ => format!("--state 0-{} --dt SECONDS", n - 1),
+            };
+            let remedy = format!(
+                "{roles} (columns count from 0; --velocity and --episode name others), or write a first line with names"
+            );
             let remedy = if n > head.len() {
                 format!("--samples-are columns if each line is a channel; else {remedy}")
             } else {
-                remedy.to_owned()
+                remedy
             };
             return Err(ReadError::NoRoles(Fault::new(what, &input.name, remedy)));
         }

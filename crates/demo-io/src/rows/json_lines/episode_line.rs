@@ -57,7 +57,7 @@ impl<'a> EpisodeLines<'a> {
         if n == 0 {
             return Err(other_form("a sample has no number"));
         }
-        crate::arrays::fields::too_many_channels(n, &place)?;
+        crate::arrays::fields::too_many_channels(n, "columns", &place)?;
         if self.episodes.len() == MOST_EPISODES {
             let remedy = "files with fewer episodes";
             return Err(ReadError::TooLarge(Fault::new(format!("more than {MOST_EPISODES} episodes"), place, remedy)));
