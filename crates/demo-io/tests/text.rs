@@ -445,7 +445,13 @@ fn lines_may_be_channels() {
     let timed = ReadOptions { dt: None, time: Some("0".to_owned()), ..every.clone() };
     let found = parsed("a.txt", "0 2 4\n5 6 7\n", &timed).unwrap();
     assert_eq!((names(&found), found.time_step()), (vec!["x1"], 2.0));
-    refused("a.txt", text, &plain(), "NoRoles", &["--samples-are columns if each line is a channel", "--state 0-3 --dt"]);
+    refused(
+        "a.txt",
+        text,
+        &plain(),
+        "NoRoles",
+        &["--samples-are columns if each line is a channel", "--state 0-3 --dt"],
+    );
     refused("a.txt", "1 3 5\n2 a 6\n", &every, "NotANumber", &["'a'", "line 2, column 1"]);
 }
 

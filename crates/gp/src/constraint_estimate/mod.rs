@@ -4,6 +4,7 @@
 //! are. Only both properties together identify the rows of A: the policy may have no component along a velocity that does not vary, and a
 //! component of the disagreement may be the policy's error.
 
+mod locked;
 mod noise;
 mod parts;
 mod projected_samples;
@@ -24,6 +25,7 @@ use crate::stretches::partition::{Part, cheapest_parts, known_part};
 use crate::stretches::segmentation::PARAMETER;
 use crate::stretches::{MOST_DIMENSIONS, centred, evenly, parts};
 use crate::{GpError, Rows};
+use locked::held_channels;
 use noise::noise;
 use parts::{Parts, rarity_of};
 use projected_samples::{Disagreement, ProjectedSamples, SHARED};
@@ -233,8 +235,14 @@ impl Search<'_> {
             stretch.acting = Acting::Constraint;
             stretch.space = space;
             stretch.matrix = canonical(&(&samples.basis * directions.first(rank)));
-            self.find_bound(&mut stretch, inside);
             stretch.angle = self.angle(inside, (space, rank), least);
+            if samples.is_recorded() {
+                let velocities = self.rows.velocities().select_columns(inside);
+                if let Some(held) = held_channels(&stretch.matrix, &velocities, self.noise) {
+                    (stretch.matrix, stretch.angle) = held;
+                }
+            }
+            self.find_bound(&mut stretch, inside);
             stretch.evidence = -0.5 * change;
         }
         if found && self.spaces[stretch.space].jacobians.is_none() {
