@@ -40,6 +40,19 @@ pub struct Decision {
     pub flag: String,
 }
 
+impl Decision {
+    /// A decision with the flag of its subject.
+    pub fn new(what: Subject, value: impl Into<String>, why: impl Into<String>) -> Self {
+        Decision { what, value: value.into(), why: why.into(), flag: what.flag().to_owned() }
+    }
+
+    /// The same with another flag.
+    #[must_use]
+    pub fn with_flag(self, flag: &str) -> Self {
+        Decision { flag: flag.to_owned(), ..self }
+    }
+}
+
 /// The subject of a decision. In files and texts it is a word: "time step".
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -86,6 +99,28 @@ pub enum Subject {
     Bandwidth,
     /// Initial size of a receptive field.
     InitD,
+}
+
+impl Subject {
+    /// The flag that overrides its decisions.
+    pub fn flag(self) -> &'static str {
+        match self {
+            Subject::TimeStep => "--dt",
+            Subject::Scale => "--scale",
+            Subject::Context => "--context",
+            Subject::Quaternions | Subject::Angles => "--wraps",
+            Subject::Jumps => "--jumps",
+            Subject::Switches => "--constraint-column",
+            Subject::Velocities | Subject::ShiftOfVelocities | Subject::Integration => "--integration",
+            Subject::Smoothing | Subject::Averaging => "--smooth",
+            Subject::AtOnce => "--at-once",
+            Subject::Rows => "--max-rows",
+            Subject::Learner => "--learner",
+            Subject::Metric | Subject::TaskSpace => "--robot",
+            Subject::Bandwidth => "--bandwidth",
+            Subject::InitD => "--init-d",
+        }
+    }
 }
 
 impl fmt::Display for Subject {

@@ -34,7 +34,7 @@ pub(crate) fn split(
             why: "no channel is left that moves; --context with fewer names".to_owned(),
         });
     }
-    notes.decided(Subject::Context, names.join(", "), why, "--context");
+    notes.decided(Subject::Context, names.join(", "), why);
     for episode in episodes {
         episode.context = DVector::from_iterator(context.len(), context.iter().map(|&at| episode.positions[(at, 0)]));
         episode.positions = episode.positions.select_rows(&state);

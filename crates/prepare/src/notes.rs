@@ -9,8 +9,8 @@ pub(crate) struct Notes {
 }
 
 impl Notes {
-    pub(crate) fn decided(&mut self, what: Subject, value: impl Into<String>, why: impl Into<String>, flag: &str) {
-        self.decisions.push(Decision { what, value: value.into(), why: why.into(), flag: flag.to_owned() });
+    pub(crate) fn decided(&mut self, what: Subject, value: impl Into<String>, why: impl Into<String>) {
+        self.decisions.push(Decision::new(what, value, why));
     }
 
     pub(crate) fn found(&mut self, verdict: Verdict, what: impl Into<String>, next: impl Into<String>) {

@@ -22,7 +22,7 @@ pub(crate) fn scales(
             let known: Vec<_> = channels.iter().map(|channel| channel.name.as_str()).collect();
             return Err(PrepareError::UnknownChannel { name: name.clone(), known: known.join(", ") });
         }
-        notes.decided(Subject::Scale, format!("{name} times {factor}"), "given", "--scale");
+        notes.decided(Subject::Scale, format!("{name} times {factor}"), "given");
     }
     Ok(scales)
 }

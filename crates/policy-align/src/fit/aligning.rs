@@ -13,7 +13,6 @@ use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 use smoothing::SavitzkyGolay;
 
-use super::decision::decision;
 use super::options::FitOptions;
 use super::progress::Progress;
 use super::recorded_rows::averaged;
@@ -129,8 +128,7 @@ pub(super) fn fit(
     progress: &mut Progress<'_>,
 ) -> Result<AlignedFit, FitError> {
     let (demonstrations, integration, why) = integrable(prepared)?;
-    let mut decisions =
-        vec![decision(Subject::Integration, format!("{integration:?}").to_lowercase(), why, "--integration")];
+    let mut decisions = vec![Decision::new(Subject::Integration, format!("{integration:?}").to_lowercase(), why)];
     progress.begin(2, 4, "choosing bandwidth and receptive fields")?;
     let tried = grid(&demonstrations, integration, (rows, reference), options, progress)?;
     let best = choose(&tried).ok_or(FitError::Cancelled)?;
@@ -141,13 +139,12 @@ pub(super) fn fit(
         squared_error(best.total().to_choose())
     );
     let given = |flag: bool| if flag { "given".to_owned() } else { why_best.clone() };
-    decisions.push(decision(
+    decisions.push(Decision::new(
         Subject::Bandwidth,
         format!("{:?} (σ² {:.3e})", best.bandwidth, best.sigma_squared).to_lowercase(),
         given(options.bandwidth.is_some()),
-        "--bandwidth",
     ));
-    decisions.push(decision(Subject::InitD, format!("{}", best.init_d), given(options.init_d.is_some()), "--init-d"));
+    decisions.push(Decision::new(Subject::InitD, format!("{}", best.init_d), given(options.init_d.is_some())));
     progress.begin(3, 4, "aligning all movements")?;
     let align = PolicyAlign { integration, bandwidth: Bandwidth::Fixed(best.sigma_squared), ..PolicyAlign::default() };
     let aligned = align.align(&demonstrations)?;

@@ -7,11 +7,6 @@ use super::digest::Digest;
 use super::options::{FitOptions, LearnerChoice};
 use crate::{Decision, LeftOut, Prepared, Subject};
 
-/// A decision, its reason, and the flag that overrides it.
-pub(super) fn decision(what: Subject, value: impl Into<String>, why: impl Into<String>, flag: &str) -> Decision {
-    Decision { what, value: value.into(), why: why.into(), flag: flag.to_owned() }
-}
-
 /// How samples became the rows of a Gaussian process; `None` if each sample is a row.
 pub(super) fn rows_decision(readings: &AutoFit) -> Option<Decision> {
     let gp::TrustReport { rows, inducing, rows_dropped, task_space, .. } = readings.slope().report();
@@ -34,7 +29,7 @@ pub(super) fn rows_decision(readings: &AutoFit) -> Option<Decision> {
         why.push(format!("{contradicted} states in stretches that other movements contradict count less"));
     }
     let flag = if thinned == 0 && inducing.is_none() { "--max-rows" } else { "--inducing" };
-    (!why.is_empty()).then(|| decision(Subject::Rows, rows.to_string(), why.join("; "), flag))
+    (!why.is_empty()).then(|| Decision::new(Subject::Rows, rows.to_string(), why.join("; ")).with_flag(flag))
 }
 
 /// The samples that were held in memory together; `None` if all were.
@@ -51,7 +46,7 @@ pub(super) fn digests_decision(prepared: &Prepared, digests: &[Digest], readings
         ),
     };
     let at_hand = format!("{} samples", prepared.demonstrations.n_samples());
-    (!digests.is_empty()).then(|| decision(Subject::AtOnce, at_hand, why, "--at-once"))
+    (!digests.is_empty()).then(|| Decision::new(Subject::AtOnce, at_hand, why))
 }
 
 /// All movements except those kept; PolicyAlign could not align them with the others.
@@ -62,7 +57,7 @@ pub(super) fn discarded(kept: &[usize], episodes: &[String]) -> Vec<LeftOut> {
 }
 
 pub(super) fn learner_decision(options: &FitOptions, readings: &AutoFit) -> Decision {
-    let given = |learner| decision(Subject::Learner, learner, "given", "--learner");
+    let given = |learner| Decision::new(Subject::Learner, learner, "given");
     match options.learner {
         LearnerChoice::PolicyAlign => given("policy-align"),
         LearnerChoice::Slope => given("slope GP"),
@@ -79,7 +74,7 @@ pub(super) fn learner_decision(options: &FitOptions, readings: &AutoFit) -> Deci
                     squared_error(numbers.a_d)
                 ),
             };
-            decision(Subject::Learner, learner, why, "--reading")
+            Decision::new(Subject::Learner, learner, why).with_flag("--reading")
         }
     }
 }

@@ -6,7 +6,6 @@ use motion::{Decision, Subject};
 use nalgebra::{DMatrix, DVector};
 use prepare::numbers::squared_error;
 
-use super::decision::decision;
 use super::{FitOptions, learn};
 use crate::channel_joints::{ChannelJoints, scales_of_joints, unscaled};
 use crate::{FitError, Prepared};
@@ -47,7 +46,7 @@ pub(super) fn weighed(
     let why = format!(
         "constraints are at right angles in this metric: error relative to the motion {after}, in that of the channels {before}"
     );
-    let decision = decision(Subject::Metric, format!("mass matrix of {}", robot.name()), why, "--robot");
+    let decision = Decision::new(Subject::Metric, format!("mass matrix of {}", robot.name()), why);
     Ok(Some(Weighed { rows, readings, decision }))
 }
 

@@ -5,7 +5,6 @@ use kinematics::RobotModel;
 use motion::{Decision, Subject};
 use prepare::numbers::squared_error;
 
-use super::decision::decision;
 use crate::channel_joints::{scales_of_joints, unscaled};
 use crate::named::TaskLinks;
 use crate::{FitError, Prepared};
@@ -39,6 +38,6 @@ impl LinkNames {
             "constraints are constant there: expected error {}, learnt from all that they leave free",
             squared_error(report.expected_nupe)
         );
-        Some(decision(Subject::TaskSpace, name.clone(), why, "--robot"))
+        Some(Decision::new(Subject::TaskSpace, name.clone(), why))
     }
 }

@@ -9,7 +9,6 @@ use prepare::numbers::squared_error;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
-use super::decision::decision;
 use super::options::{FitOptions, LearnerChoice};
 use crate::{FitError, Prepared};
 
@@ -133,7 +132,7 @@ fn decisions(prepared: &Prepared, factors: &DVector<f64>, (before, after): (f64,
     let changed = prepared.state.iter().zip(factors).filter(|(_, factor)| **factor != 1.0);
     changed
         .map(|(channel, factor)| {
-            decision(Subject::Scale, format!("{} times {factor}", channel.name), why.as_str(), "--scale")
+            Decision::new(Subject::Scale, format!("{} times {factor}", channel.name), why.as_str())
         })
         .collect()
 }

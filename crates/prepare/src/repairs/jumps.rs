@@ -27,7 +27,7 @@ pub(crate) fn cut(episodes: &mut Vec<Episode>, channels: &[Channel], notes: &mut
         .collect();
     let Some((first, axis)) = first else { return };
     let some = if cut == 1 { "1 episode" } else { &format!("{cut} episodes") };
-    notes.decided(Subject::Jumps, format!("{some} split"), "one step is far longer than its neighbours", "--jumps");
+    notes.decided(Subject::Jumps, format!("{some} split"), "one step is far longer than its neighbours");
     let verdict = if f64::from(cut) > MANY * count as f64 { Verdict::Doubtful } else { Verdict::Good };
     let verb = if cut == 1 { "jumps and was split there" } else { "jump and were split there" };
     notes.found(

@@ -19,7 +19,7 @@ pub(crate) fn decide(episodes: &mut [Episode], dim: usize, notes: &mut Notes) {
     let long: usize = lengths.iter().filter(|&&length| length >= dim + SPARE).sum();
     if 2 * long >= samples {
         let value = format!("{}, in {}", episodes.iter().map(switches).sum::<usize>(), counted(with, "episode"));
-        notes.decided(Subject::Switches, value, "where the label of the constraint changes", "--constraint-column");
+        notes.decided(Subject::Switches, value, "where the label of the constraint changes");
         return;
     }
     for episode in episodes {

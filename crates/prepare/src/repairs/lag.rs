@@ -78,11 +78,11 @@ pub(crate) fn repair(episodes: &mut [Episode], noise: &Noise, notes: &mut Notes)
         Remedy::Positions => {
             let why =
                 format!("those recorded are {seconds} s late, and noise of positions is smaller than the difference");
-            notes.decided(Subject::Velocities, "from positions", why, "--integration");
+            notes.decided(Subject::Velocities, "from positions", why);
         }
         Remedy::Shift => {
             let why = format!("they match the steps there; so the last {} have none", counted(samples, "sample"));
-            notes.decided(Subject::ShiftOfVelocities, format!("{seconds} s sooner"), why, "--integration");
+            notes.decided(Subject::ShiftOfVelocities, format!("{seconds} s sooner"), why);
             for episode in episodes {
                 *episode = sooner(episode, half_samples);
             }

@@ -63,7 +63,7 @@ fn report_signs(names: &str, flips: usize, notes: &mut Notes) {
     } else {
         let flips = counted(flips, "change");
         let why = format!("{flips} of sign, but q and −q are one orientation");
-        notes.decided(Subject::Quaternions, format!("{names} with one sign"), why, "--wraps");
+        notes.decided(Subject::Quaternions, format!("{names} with one sign"), why);
         format!(" with {flips} of sign, which were undone")
     };
     notes.found(

@@ -27,7 +27,7 @@ pub(crate) fn decide(
         for episode in episodes.iter_mut() {
             episode.times = Times::Even { step: time_step, len: episode.n_samples() };
         }
-        notes.decided(Subject::TimeStep, format!("{time_step} s"), "given", "--dt");
+        notes.decided(Subject::TimeStep, format!("{time_step} s"), "given");
         return Ok(());
     }
     let (mut uneven, mut worst, mut gaps, mut first) = (0, 0.0_f64, 0, None);
@@ -78,7 +78,7 @@ fn decided(episodes: &[Episode], (uneven, worst): (usize, f64), notes: &mut Note
             percent(worst)
         ),
     };
-    notes.decided(Subject::TimeStep, value, why, "--dt");
+    notes.decided(Subject::TimeStep, value, why);
 }
 
 /// Reports a time step that is hardly in seconds.

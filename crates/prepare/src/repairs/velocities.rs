@@ -54,11 +54,11 @@ pub(crate) fn decide(
                 "record velocities in every episode, or leave out the episodes without",
             );
         }
-        notes.decided(Subject::Velocities, "from positions", why, "--integration");
+        notes.decided(Subject::Velocities, "from positions", why);
         return Agreement::None;
     }
     if options.velocities == VelocityUse::Recorded {
-        notes.decided(Subject::Velocities, "recorded", "used as requested", "--integration");
+        notes.decided(Subject::Velocities, "recorded", "used as requested");
         return Agreement::Own;
     }
     if lag::repair(episodes, noise, notes) {
@@ -74,7 +74,7 @@ pub(crate) fn decide(
         discard(episodes);
         let explained = percent(fit.explained.max(0.0));
         let why = format!("those recorded explain {explained} of the steps");
-        notes.decided(Subject::Velocities, "from positions", why, "--integration");
+        notes.decided(Subject::Velocities, "from positions", why);
         notes.found(
             Verdict::Doubtful,
             format!("recorded velocities do not match the steps (they explain {explained} of them) and were ignored"),
@@ -89,7 +89,7 @@ pub(crate) fn decide(
             Some(_) => ("recorded", "recorded; they are differences of the positions"),
             None => ("recorded", "recorded; they agree with the steps"),
         };
-        notes.decided(Subject::Velocities, value, why, "--integration");
+        notes.decided(Subject::Velocities, value, why);
         return made.unwrap_or(Agreement::Own);
     }
     let stamps_are_given = options.time_step.is_some() || options.time_unit_given;
@@ -218,7 +218,7 @@ fn in_seconds(episodes: &mut [Episode], fit: &Steps, notes: &mut Notes) -> bool 
     // Keeps only the valid one of two decisions on the time step.
     notes.decisions.retain(|decision| decision.what != Subject::TimeStep);
     let seconds = format!("{} s", step / unit.per_second());
-    notes.decided(Subject::TimeStep, seconds, format!("{what}: stamps are {}", unit.name()), "--dt");
+    notes.decided(Subject::TimeStep, seconds, format!("{what}: stamps are {}", unit.name()));
     let next = format!("--time-unit {}, or --dt", unit.symbol());
     notes.found(Verdict::Doubtful, format!("{what}: stamps were read as {}", unit.name()), next);
     true
@@ -246,12 +246,7 @@ fn rescale(episodes: &mut [Episode], fit: &Steps, channels: &[Channel], notes: &
         let (name, factor) = (&channels[odd].name, fit.factors[odd]);
         if factor == 0.0 {
             let what = format!("velocities of channel {name} are not 0, although it never moves");
-            notes.decided(
-                Subject::Velocities,
-                "recorded, 0 where a channel never moves",
-                what.clone(),
-                "--integration",
-            );
+            notes.decided(Subject::Velocities, "recorded, 0 where a channel never moves", what.clone());
             let next = "check that the column of velocities belongs to this channel (--velocity)";
             notes.found(Verdict::Doubtful, format!("{what}; they were set to 0"), next);
             return;
@@ -260,7 +255,7 @@ fn rescale(episodes: &mut [Episode], fit: &Steps, channels: &[Channel], notes: &
         (format!("velocities of channel {name} are {} times its steps, unlike the others", short(times)), times)
     };
     let next = mistake(times, step).map_or("check units and time step (--dt), or whether a filter delays them: --integration displacement takes velocities from the positions", |(_, words)| words);
-    notes.decided(Subject::Velocities, "recorded, rescaled to agree with the steps", what.clone(), "--integration");
+    notes.decided(Subject::Velocities, "recorded, rescaled to agree with the steps", what.clone());
     notes.found(Verdict::Doubtful, format!("{what}; they were converted to the units of positions and stamps"), next);
 }
 

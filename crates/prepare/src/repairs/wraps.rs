@@ -28,7 +28,6 @@ pub(crate) fn unwrap(episodes: &mut [Episode], channels: &[Channel], notes: &mut
             Subject::Angles,
             format!("{name} unwrapped"),
             format!("it jumps by a whole turn in {} of {} episodes", wrapped, episodes.len()),
-            "--wraps",
         );
         notes.found(
             Verdict::Doubtful,

@@ -181,7 +181,7 @@ pub(crate) fn decide(
             ("positions smoothed piecewise", format!("{words}; velocities are no better"))
         }
     };
-    notes.decided(Subject::Smoothing, value, why, "--smooth");
+    notes.decided(Subject::Smoothing, value, why);
     if recorded == VelocitySource::Positions && noise.is_noisy() {
         notes.found(
             Verdict::Good,

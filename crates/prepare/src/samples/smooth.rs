@@ -21,7 +21,7 @@ pub(crate) fn as_requested(
     let window: &dyn Fn(&Trajectory) -> usize = match smoothing {
         Smoothing::Auto => return Ok(None),
         Smoothing::Off => {
-            notes.decided(Subject::Smoothing, "none: positions as recorded", "as requested", "--smooth");
+            notes.decided(Subject::Smoothing, "none: positions as recorded", "as requested");
             return Ok(Some(demonstrations.clone()));
         }
         Smoothing::Samples(window) => &move |_| window,
@@ -44,7 +44,7 @@ pub(crate) fn as_requested(
         (Some(least), Some(most)) if least < most => format!("positions, windows of {least} to {most} samples"),
         (least, _) => format!("positions, window of {} samples", least.unwrap_or_default()),
     };
-    notes.decided(Subject::Smoothing, value, "as requested; local parabolas", "--smooth");
+    notes.decided(Subject::Smoothing, value, "as requested; local parabolas");
     Ok(Some(smoothed))
 }
 

@@ -34,7 +34,7 @@ pub(crate) fn decide(demonstrations: &Demonstrations, noise: &Noise, notes: &mut
             percent_of_all(noise.step_share),
             percent_of_all(share)
         );
-        notes.decided(Subject::Averaging, format!("over {taken} samples"), why, "--smooth");
+        notes.decided(Subject::Averaging, format!("over {taken} samples"), why);
     }
     taken
 }
