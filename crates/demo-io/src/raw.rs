@@ -2,7 +2,7 @@
 
 use crate::names::selection::{flags, unmatched};
 use crate::rows::stamps::Stamp;
-use motion::{Channel, Episode, Finding, Labels, RecordRange, Recordings, Source, Times, Verdict};
+use motion::{Channel, Episode, Finding, Labels, RecordRange, Recordings, Source, Times};
 use nalgebra::DMatrix;
 
 use crate::error::in_one_line;
@@ -264,7 +264,7 @@ pub(crate) fn no_time(place: impl Into<String>, what_is_time: &str) -> ReadError
 
 /// A finding that did not prevent reading.
 pub(crate) fn remark(what: impl Into<String>, next: impl Into<String>) -> Finding {
-    Finding { verdict: Verdict::Good, what: in_one_line(what.into()), next: in_one_line(next.into()) }
+    Finding::remark(in_one_line(what.into()), in_one_line(next.into()))
 }
 
 /// A finding on unused names except those in `elsewhere`; `None` if there are none.

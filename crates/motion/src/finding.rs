@@ -14,6 +14,13 @@ pub enum Verdict {
     DoNotUse,
 }
 
+impl Verdict {
+    /// The verdict of the worst finding; good if there is none.
+    pub fn worst(findings: &[Finding]) -> Self {
+        findings.iter().map(|finding| finding.verdict).max().unwrap_or(Verdict::Good)
+    }
+}
+
 /// An anomaly of recordings or a policy. Findings with [`Verdict::Good`] are remarks.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -24,6 +31,23 @@ pub struct Finding {
     pub what: String,
     /// The next step.
     pub next: String,
+}
+
+impl Finding {
+    /// A finding of some severity.
+    pub fn new(verdict: Verdict, what: impl Into<String>, next: impl Into<String>) -> Self {
+        Finding { verdict, what: what.into(), next: next.into() }
+    }
+
+    /// A finding with [`Verdict::Doubtful`].
+    pub fn doubt(what: impl Into<String>, next: impl Into<String>) -> Self {
+        Finding::new(Verdict::Doubtful, what, next)
+    }
+
+    /// A finding with [`Verdict::Good`].
+    pub fn remark(what: impl Into<String>, next: impl Into<String>) -> Self {
+        Finding::new(Verdict::Good, what, next)
+    }
 }
 
 /// An automatic decision, with its reason and the flag that overrides it.

@@ -3,7 +3,7 @@ use motion::is_in_degrees;
 use nalgebra::{DMatrix, DMatrixView, DVector, DVectorView};
 use prepare::StateChannel;
 
-use crate::{Finding, Verdict};
+use crate::Finding;
 
 /// Configurations in one batch; their link poses fit into the processor's cache.
 const AT_ONCE: usize = 64;
@@ -94,10 +94,11 @@ pub fn joints_in_degrees(robot: &RobotModel, state: &[StateChannel]) -> Option<F
         channel.unit.is_none() && channel.turns() > TURNS && !matches!(kind, None | Some(JointKind::Prismatic))
     };
     let names: Vec<&str> = state.iter().filter(turns).map(|channel| channel.name.as_str()).collect();
-    (!names.is_empty()).then(|| Finding {
-        verdict: Verdict::Doubtful,
-        what: format!("joints were taken to be in radians, but move by many turns: {}", names.join(", ")),
-        next: format!("if they are in degrees: --degrees {}", names.join(",")),
+    (!names.is_empty()).then(|| {
+        Finding::doubt(
+            format!("joints were taken to be in radians, but move by many turns: {}", names.join(", ")),
+            format!("if they are in degrees: --degrees {}", names.join(",")),
+        )
     })
 }
 

@@ -12,7 +12,7 @@ use std::process::Command;
 use models::{direct, free, one_of_each, policy_align, slope, states, toy};
 use motion::{LearntPolicy as _, Policy as _};
 use nalgebra::DMatrix;
-use policy_align::{CSource, ExportError, Finding, Model, Precision, Verdict};
+use policy_align::{CSource, ExportError, Finding, Model, Precision};
 
 /// Reads states; writes action, potential and support, all as bits.
 const CALLER: &str = r#"
@@ -159,7 +159,7 @@ fn function_names_are_checked_and_comments_escaped() {
         assert_eq!(c.of(&model), Err(ExportError::Name { name: name.to_owned() }));
     }
     model.state[0].name = "x */ int evil; /* \\".to_owned();
-    model.trust.findings.push(Finding { verdict: Verdict::Doubtful, what: "a\nb */".to_owned(), next: String::new() });
+    model.trust.findings.push(Finding::doubt("a\nb */", String::new()));
     let source = CSource::default().of(&model).unwrap();
     assert_eq!(source.matches("*/").count(), 2, "{}", &source[..1500]);
     if compiler().is_some() {

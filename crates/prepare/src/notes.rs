@@ -14,7 +14,7 @@ impl Notes {
     }
 
     pub(crate) fn found(&mut self, verdict: Verdict, what: impl Into<String>, next: impl Into<String>) {
-        self.findings.push(Finding { verdict, what: what.into(), next: next.into() });
+        self.findings.push(Finding::new(verdict, what.into(), next.into()));
     }
 
     pub(crate) fn left_out(&mut self, episode: &str, why: impl Into<String>) {

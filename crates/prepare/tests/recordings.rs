@@ -325,7 +325,7 @@ proptest! {
 
 #[test]
 fn reader_findings_come_first() {
-    let found = Finding { verdict: Verdict::Good, what: "the bag ends".to_owned(), next: "repair it".to_owned() };
+    let found = Finding::remark("the bag ends", "repair it");
     let mut cut = recordings();
     cut.findings.push(found.clone());
     cut.episodes.truncate(5);

@@ -9,7 +9,7 @@ use super::canonical::checksum;
 use super::error::ModelError;
 use super::whole_file::write_whole;
 use crate::model_policy::BEYOND;
-use crate::{Model, StateChannel, Trust, Verdict};
+use crate::{Model, StateChannel, Verdict};
 
 const FORMAT: &str = "policy-align model";
 
@@ -118,7 +118,7 @@ impl Model {
         if !(positive(self.data.longest) && not_negative(self.data.speed)) {
             return Some(("data".to_owned(), "the duration must be positive and the speed not negative".to_owned()));
         }
-        let (stored, worst) = (self.trust.verdict, Trust::verdict_of(&self.trust.findings));
+        let (stored, worst) = (self.trust.verdict, Verdict::worst(&self.trust.findings));
         if stored != worst {
             let reason = format!("it is {}, but the worst of the findings is {}", word(stored), word(worst));
             return Some(("trust.verdict".to_owned(), reason));

@@ -4,7 +4,7 @@ use motion::Policy;
 use nalgebra::DMatrix;
 use prepare::numbers::percent;
 
-use crate::{Finding, Verdict};
+use crate::Finding;
 
 /// Constraints remove part of the speed, but where they differ between movements, some movement nearly has the policy's speed. Above this
 /// factor on the largest recorded speed, the policy is extrapolated.
@@ -22,15 +22,14 @@ pub(crate) fn extrapolated(policy: &dyn Policy, states: &DMatrix<f64>, recorded:
     let recorded = largest(&speeds(recorded));
     let power = |least: f64| learnt.iter().filter(|&&speed| speed > least).map(|speed| speed * speed).sum::<f64>();
     let share = power(TIMES * recorded) / power(0.0);
-    (share > MOST).then(|| Finding {
-        verdict: Verdict::Doubtful,
-        what: format!(
+    (share > MOST).then(|| Finding::doubt(
+        format!(
             "where constraints act most, the policy is extrapolated: up to {:.0} times as fast as any movement, {} of its mean square",
             largest(&learnt) / recorded,
             percent(share)
         ),
-        next: "record movements that pass there more freely, or under other constraints".to_owned(),
-    })
+        "record movements that pass there more freely, or under other constraints",
+    ))
 }
 
 #[cfg(test)]

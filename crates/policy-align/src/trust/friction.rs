@@ -3,8 +3,8 @@
 use nalgebra::Vector2;
 use prepare::numbers::percent;
 
+use crate::Finding;
 use crate::along::{Along, LEAST_T, Regression};
-use crate::{Finding, Verdict};
 
 /// Least missing speed, as a share of the root mean square. Its t over movements is 5 and more with friction, below 3.5 with all else. The
 /// policy absorbs some of it, so that the share is too low.
@@ -14,14 +14,13 @@ const MISSING: f64 = 0.01;
 /// `movements` holds those that move.
 pub(crate) fn friction(movements: &[Vec<Along>], rows: usize) -> Option<Finding> {
     let (missing, t) = missing_speed(movements, rows)?;
-    (missing > MISSING && t > LEAST_T).then(|| Finding {
-        verdict: Verdict::Doubtful,
-        what: format!(
+    (missing > MISSING && t > LEAST_T).then(|| Finding::doubt(
+        format!(
             "movements that constraints turn aside are too slow, by at least {} of the speed: friction, or constraints that give way",
             percent(missing)
         ),
-        next: "reduce friction and hold constraints firmly, or record the velocities that were commanded".to_owned(),
-    })
+        "reduce friction and hold constraints firmly, or record the velocities that were commanded",
+    ))
 }
 
 /// Least squares of r − nᵀπ̂ = −f + ε nᵀπ̂ over rows: f relative to the root mean square speed, and its t with movements as the units.

@@ -5,8 +5,8 @@ use prepare::numbers::percent;
 use prepare::{Prepared, end_places};
 
 use super::numbers::TrustNumbers;
+use crate::Finding;
 use crate::along::Along;
-use crate::{Finding, Verdict};
 
 /// Least share of the policy's residuals that a constant velocity of each movement must explain.
 const OWN: f64 = 0.35;
@@ -37,7 +37,7 @@ pub(crate) fn differing_goals(
         ),
         _ => return None,
     };
-    Some(Finding { verdict: Verdict::Doubtful, what, next: NEXT.to_owned() })
+    Some(Finding::doubt(what, NEXT))
 }
 
 /// Direction n of a velocity, and r − nᵀπ̂.

@@ -13,27 +13,18 @@ const PUSHES: f64 = 0.01;
 pub(crate) fn pushed(push: f64, learnt: bool, prepared: &Prepared, findings: &mut Vec<Finding>) {
     let what = format!("constraints pushed, on average with {:.0} % of the policy's speed", 100.0 * push);
     let finding = match learnt {
-        true if push < PUSHES => found(
-            Verdict::Doubtful,
-            "movements are predicted only with pushes too small to matter: they differ by something else".to_owned(),
+        true if push < PUSHES => Finding::doubt(
+            "movements are predicted only with pushes too small to matter: they differ by something else",
             "if that is a goal, an object or a load, record it and name its columns with --context",
         ),
         true => {
             settle(prepared, findings);
             let next = "the policy was learnt from the directions in which velocities differ: nothing to do";
-            found(Verdict::Good, what, next)
+            Finding::remark(what, next)
         }
-        false => found(
-            Verdict::Doubtful,
-            what,
-            "--learner slope, which learns from the directions in which velocities differ",
-        ),
+        false => Finding::doubt(what, "--learner slope, which learns from the directions in which velocities differ"),
     };
     findings.insert(0, finding);
-}
-
-fn found(verdict: Verdict, what: String, next: &str) -> Finding {
-    Finding { verdict, what, next: next.to_owned() }
 }
 
 /// The policy was learnt from presses along varying directions, so the finding on them becomes a remark.

@@ -14,10 +14,3 @@ pub struct Trust {
     /// The numbers behind the verdict.
     pub numbers: TrustNumbers,
 }
-
-impl Trust {
-    /// The verdict that results from findings.
-    pub(crate) fn verdict_of(findings: &[Finding]) -> Verdict {
-        findings.iter().map(|finding| finding.verdict).max().unwrap_or(Verdict::Good)
-    }
-}

@@ -31,13 +31,15 @@ impl Lack {
 /// not follow a policy of the state alone.
 pub(crate) fn slow_starts(movements: &[Vec<Along>], rows: &Rows) -> Option<Finding> {
     let (missing, t) = missing_at_starts(movements, rows)?;
-    (missing > MISSING && t > LEAST_T).then(|| Finding {
-        verdict: if missing > MUCH { Verdict::Doubtful } else { Verdict::Good },
-        what: format!(
-            "movements begin too slowly for the policy, by {} in their first tenth: from rest?",
-            percent_of_all(missing)
-        ),
-        next: "begin to record when the hand has its speed, or cut the beginnings off (--trim-still)".to_owned(),
+    (missing > MISSING && t > LEAST_T).then(|| {
+        Finding::new(
+            if missing > MUCH { Verdict::Doubtful } else { Verdict::Good },
+            format!(
+                "movements begin too slowly for the policy, by {} in their first tenth: from rest?",
+                percent_of_all(missing)
+            ),
+            "begin to record when the hand has its speed, or cut the beginnings off (--trim-still)",
+        )
     })
 }
 

@@ -3,8 +3,8 @@
 use nalgebra::Vector2;
 use prepare::numbers::percent_of_all;
 
+use crate::Finding;
 use crate::along::{Along, LEAST_T, Regression};
-use crate::{Finding, Verdict};
 
 /// Share of the squared velocities above which a policy is doubtful.
 const MUCH: f64 = 0.05;
@@ -58,11 +58,11 @@ pub(crate) fn unexplained(movements: Vec<Vec<Along>>, predicted: bool) -> Option
         None if predicted => ("time, a moving target, a delay, a load or the operator may", MUCH),
         None => return None,
     };
-    (persistence > PERSISTENT && share > bound).then(|| Finding {
-        verdict: Verdict::Doubtful,
-        what: format!("the state does not explain {} of the squared velocities ({cause})", percent_of_all(share)),
-        next: "record what else the motion depends on; what is constant during a movement can be given as --context"
-            .to_owned(),
+    (persistence > PERSISTENT && share > bound).then(|| {
+        Finding::doubt(
+            format!("the state does not explain {} of the squared velocities ({cause})", percent_of_all(share)),
+            "record what else the motion depends on; what is constant during a movement can be given as --context",
+        )
     })
 }
 

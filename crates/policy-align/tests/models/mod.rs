@@ -129,11 +129,10 @@ pub(crate) fn model(learnt: Learnt, demonstrations: &Demonstrations) -> Model {
         seed: 1,
         trust: Trust {
             verdict: Verdict::Doubtful,
-            findings: vec![Finding {
-                verdict: Verdict::Doubtful,
-                what: "held-out movements are predicted poorly (error 0.2)".to_owned(),
-                next: "record more movements".to_owned(),
-            }],
+            findings: vec![Finding::doubt(
+                "held-out movements are predicted poorly (error 0.2)",
+                "record more movements",
+            )],
             numbers: TrustNumbers {
                 episodes: demonstrations.n_trajectories(),
                 reading: gp::Hypothesis::Constrained,

@@ -1,6 +1,6 @@
 //! Channels in which only noise changes.
 
-use motion::{Channel, Demonstrations, Finding, Verdict};
+use motion::{Channel, Demonstrations, Finding};
 
 /// In movements of fewer samples, noise cannot be distinguished from motion.
 const SAMPLES: usize = 8;
@@ -28,9 +28,8 @@ pub(crate) fn held(demonstrations: &Demonstrations, channels: &[Channel]) -> Opt
     }
     let names: Vec<&str> = held.iter().map(|&axis| &*channels[axis].name).collect();
     let verb = if held.len() == 1 { "is" } else { "are" };
-    Some(Finding {
-        verdict: Verdict::Doubtful,
-        what: format!("{} {verb} held: only noise changes there, and would be mistaken for motion", names.join(", ")),
-        next: format!("leave out what does not move: --ignore {}", names.join(",")),
-    })
+    Some(Finding::doubt(
+        format!("{} {verb} held: only noise changes there, and would be mistaken for motion", names.join(", ")),
+        format!("leave out what does not move: --ignore {}", names.join(",")),
+    ))
 }

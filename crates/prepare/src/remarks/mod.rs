@@ -66,13 +66,12 @@ fn mixed_units(spreads: &[f64], state: &[StateChannel]) -> Option<Finding> {
     };
     let scales: Vec<String> = names.iter().map(|name| format!("{name}=0.001")).collect();
     let (degrees, scales) = (names.join(","), scales.join(","));
-    (times >= MIXED).then(|| Finding {
-        verdict: Verdict::Doubtful,
-        what: format!("{vary} as much as the others: different unit (degrees, millimetres)?"),
-        next: format!(
+    (times >= MIXED).then(|| Finding::doubt(
+        format!("{vary} as much as the others: different unit (degrees, millimetres)?"),
+        format!(
             "all channels need one unit, because constraints act at right angles: --degrees {degrees} converts degrees to radians, --scale {scales} millimetres to metres"
         ),
-    })
+    ))
 }
 
 fn few(demonstrations: &Demonstrations, notes: &mut Notes) {

@@ -42,10 +42,8 @@ pub(crate) fn no_state(demonstrations: &Demonstrations, channels: &[Channel]) ->
         what.push(format!("{rates} are the velocities of {states}{steps}"));
         next.push(format!("--state {states} --velocity {rates}"));
     }
-    (!what.is_empty()).then(|| Finding {
-        verdict: Verdict::DoNotUse,
-        what: format!("{}: not a part of the state", what.join(", ")),
-        next: next.join(" "),
+    (!what.is_empty()).then(|| {
+        Finding::new(Verdict::DoNotUse, format!("{}: not a part of the state", what.join(", ")), next.join(" "))
     })
 }
 

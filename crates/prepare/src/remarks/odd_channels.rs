@@ -1,6 +1,6 @@
 //! Detects channels that are no coordinates of the movement: switches, and copies of others.
 
-use motion::{Channel, Episode, Finding, Verdict};
+use motion::{Channel, Episode, Finding};
 
 use crate::numbers::short;
 
@@ -36,11 +36,10 @@ pub(crate) fn odd_channels(episodes: &[Episode], channels: &[Channel]) -> Vec<Fi
     let name = |axis: usize| &channels[axis].name;
     let of_switch = |axis: usize| {
         let [low, high] = values(episodes, axis)?.map(short);
-        Some(Finding {
-            verdict: Verdict::Doubtful,
-            what: format!("{} has two values only, {low} and {high}, as a switch has", name(axis)),
-            next: format!("--ignore {}, if it is a gripper or the like: no coordinate of the movement", name(axis)),
-        })
+        Some(Finding::doubt(
+            format!("{} has two values only, {low} and {high}, as a switch has", name(axis)),
+            format!("--ignore {}, if it is a gripper or the like: no coordinate of the movement", name(axis)),
+        ))
     };
     let is_copy = |first: usize, second: usize| {
         let rows = || episodes.iter().map(|of| (of.positions.row(first), of.positions.row(second)));
@@ -50,11 +49,10 @@ pub(crate) fn odd_channels(episodes: &[Episode], channels: &[Channel]) -> Vec<Fi
     };
     let of_copy = |second: usize| {
         let first = (0..second).find(|&first| is_copy(first, second))?;
-        Some(Finding {
-            verdict: Verdict::Doubtful,
-            what: format!("{} has the values of {} everywhere: a copy, it seems", name(second), name(first)),
-            next: format!("--ignore {}, unless a constraint common to all movements keeps them equal", name(second)),
-        })
+        Some(Finding::doubt(
+            format!("{} has the values of {} everywhere: a copy, it seems", name(second), name(first)),
+            format!("--ignore {}, unless a constraint common to all movements keeps them equal", name(second)),
+        ))
     };
     (0..n).filter_map(of_switch).chain((0..n).filter_map(of_copy)).collect()
 }

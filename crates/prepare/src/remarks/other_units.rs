@@ -1,6 +1,6 @@
 //! Detects episodes in another unit than the others.
 
-use motion::{Episode, Finding, Verdict, standard_deviation, upper_median};
+use motion::{Episode, Finding, standard_deviation, upper_median};
 use nalgebra::DVector;
 
 use crate::notes::PIECE;
@@ -64,18 +64,14 @@ pub(crate) fn other_units(episodes: &[Episode], scales: &DVector<f64>) -> Option
     let unit = nearest.map_or("another unit would explain it", |(_, unit)| unit);
     let (count, rest) = (counted(odd.len(), "episode"), others.len());
     let are = if odd.len() == 1 { "is" } else { "are" };
-    Some(Finding {
-        verdict: Verdict::Doubtful,
-        what: format!(
-            "{count} ({}) {are} about {factor:.0} times {how} than the {rest} others ({unit})",
-            names.join(", ")
-        ),
-        next: if odd.len() > NAMED {
+    Some(Finding::doubt(
+        format!("{count} ({}) {are} about {factor:.0} times {how} than the {rest} others ({unit})", names.join(", ")),
+        if odd.len() > NAMED {
             "convert them in their file".to_owned()
         } else {
             format!("convert them in their file, or learn without them: --hold-out {held}")
         },
-    })
+    ))
 }
 
 /// Root mean square spread of an episode's positions, in the units of the recording.

@@ -1,6 +1,6 @@
 //! Detects a direction in which the velocity is the same everywhere.
 
-use motion::{Demonstrations, Finding, Trajectory, Verdict};
+use motion::{Demonstrations, Finding, Trajectory};
 use nalgebra::{DMatrix, DVector};
 
 use crate::StateChannel;
@@ -22,16 +22,15 @@ const MOVES: f64 = 0.05;
 pub fn pressing(demonstrations: &Demonstrations, state: &[StateChannel]) -> Option<Finding> {
     let steady = steady(demonstrations)?;
     let direction = direction_by_channels(steady.direction.as_slice(), state);
-    Some(Finding {
-        verdict: Verdict::Doubtful,
-        what: format!(
+    Some(Finding::doubt(
+        format!(
             "the velocity along {direction} is the same everywhere ({} ± {}, {} of the speed)",
             short(steady.mean.abs()),
             short(steady.deviation),
             percent(steady.share)
         ),
-        next: "a press, a conveyor or a clock among the channels hides the policy there: record movements without it, or with the surface turned in several directions".to_owned(),
-    })
+        "a press, a conveyor or a clock among the channels hides the policy there: record movements without it, or with the surface turned in several directions",
+    ))
 }
 
 struct Steady {

@@ -1,6 +1,6 @@
 //! Detects speeds that are cut off at a limit.
 
-use motion::{Demonstrations, Finding, Verdict};
+use motion::{Demonstrations, Finding};
 use nalgebra::{DMatrix, DVectorView};
 
 use crate::StateChannel;
@@ -130,10 +130,9 @@ struct Plateau {
 impl Plateau {
     fn finding(&self, along: &str) -> Finding {
         let (share, speed) = (percent(self.share), short(self.speed));
-        Finding {
-            verdict: Verdict::Doubtful,
-            what: format!("{share} of the samples have the same largest speed{along}, {speed}: a speed limit?"),
-            next: "at the limit only the policy's direction is observed: raise the limit, teach more slowly, or record the velocities that were commanded".to_owned(),
-        }
+        Finding::doubt(
+            format!("{share} of the samples have the same largest speed{along}, {speed}: a speed limit?"),
+            "at the limit only the policy's direction is observed: raise the limit, teach more slowly, or record the velocities that were commanded",
+        )
     }
 }

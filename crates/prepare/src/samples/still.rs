@@ -68,13 +68,10 @@ pub fn trim_still(recordings: &mut Recordings) {
         }
     }
     if removed > 0 {
-        recordings.findings.push(Finding {
-            verdict: Verdict::Good,
-            what: format!(
-                "{removed} of {before} samples, in which an episode had not begun or had ended, were removed"
-            ),
-            next: "without --trim-still they stay".to_owned(),
-        });
+        recordings.findings.push(Finding::remark(
+            format!("{removed} of {before} samples, in which an episode had not begun or had ended, were removed"),
+            "without --trim-still they stay",
+        ));
     }
 }
 

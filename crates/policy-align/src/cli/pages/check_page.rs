@@ -33,7 +33,7 @@ pub(crate) fn check_page(prepared: &Prepared, name: &str, coverage: (f64, &DVect
         (counted(prepared.demonstrations.n_samples(), "sample")) " of "
         (counted(prepared.state.len(), "channel")) "."
     };
-    let worst = prepared.findings.iter().map(|finding| finding.verdict).max().unwrap_or(Verdict::Good);
+    let worst = Verdict::worst(&prepared.findings);
     let body = opening(("recorded", &title), (worst, SENTENCES), &prepared.findings, &data);
     let opening = Part { id: "recorded".to_owned(), title: "Recorded".to_owned(), body };
     let mut parts = Vec::new();

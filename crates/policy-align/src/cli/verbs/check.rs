@@ -51,7 +51,7 @@ impl Check {
         (recordings, options.context) = read_with_context(session, &self.files, &flags)?;
         let reported = recordings.findings.clone();
         let prepared = prepare(recordings, &options).map_err(|error| Failure::prepare(&error, named(&self.files)))?;
-        let refused = prepared.findings.iter().any(|finding| finding.verdict == Verdict::DoNotUse);
+        let refused = Verdict::worst(&prepared.findings) == Verdict::DoNotUse;
         let exit = if refused { Exit::Refused } else { Exit::Done };
         let (coverage, direction) = directions(&prepared.demonstrations);
         if let Some(path) = &self.html {

@@ -256,10 +256,11 @@ fn without_copies(others: &mut Vec<Episode>, held: &[Episode]) -> Option<Finding
         }
         !is_copy
     });
-    (!copies.is_empty()).then(|| Finding {
-        verdict: Verdict::Good,
-        what: format!("copies of held-out episodes were left out: {}", copies.join(", ")),
-        next: "check how the files were made".to_owned(),
+    (!copies.is_empty()).then(|| {
+        Finding::remark(
+            format!("copies of held-out episodes were left out: {}", copies.join(", ")),
+            "check how the files were made",
+        )
     })
 }
 

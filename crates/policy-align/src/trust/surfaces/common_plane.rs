@@ -5,7 +5,7 @@ use nalgebra::{DMatrix, DVector};
 use prepare::numbers::short;
 
 use super::{add_scatter, as_recorded, equation, parts};
-use crate::{Finding, StateChannel, Verdict};
+use crate::{Finding, StateChannel};
 
 /// Largest ratio of the thickness to the next larger extent.
 const FLAT: f64 = 0.03;
@@ -68,7 +68,7 @@ impl CommonPlane {
         };
         let next =
             "a constraint common to all, or a policy that never moves across: record movements that do".to_owned();
-        Finding { verdict: Verdict::Good, what, next }
+        Finding::remark(what, next)
     }
 }
 

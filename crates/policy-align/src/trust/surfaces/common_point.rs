@@ -5,7 +5,7 @@ use nalgebra::{DMatrix, DVector};
 use prepare::numbers::short;
 
 use super::{add_scatter, some_of};
-use crate::{Finding, StateChannel, Verdict};
+use crate::{Finding, StateChannel};
 
 /// Largest standard deviation of a straight movement's positions across its line, as a share of that along it.
 const STRAIGHT: f64 = 0.05;
@@ -119,15 +119,13 @@ pub(crate) fn common_point(demonstrations: &Demonstrations, state: &[StateChanne
     let exact = |c: f64| if c.abs() < ZERO * usual { 0.0 } else { c };
     let place = point.iter().zip(state);
     let place = place.map(|(c, channel)| format!("{} {}", channel.name, short(exact(*c) / channel.scale)));
-    Some(Finding {
-        verdict: Verdict::Doubtful,
-        what: format!(
+    Some(Finding::doubt(
+        format!(
             "movements are straight and lead through one point ({}), but do not all end or begin there",
             place.collect::<Vec<_>>().join(", ")
         ),
-        next: "if rails or a pivot there guide the hand, they hide the policy across: record movements beside them"
-            .to_owned(),
-    })
+        "if rails or a pivot there guide the hand, they hide the policy across: record movements beside them",
+    ))
 }
 
 #[cfg(test)]

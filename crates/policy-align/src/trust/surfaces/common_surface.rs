@@ -7,7 +7,7 @@ use prepare::numbers::{percent, short};
 
 use super::quadratics::{Quadratic, Quadratics};
 use crate::trust::TrustNumbers;
-use crate::{Finding, StateChannel, Verdict};
+use crate::{Finding, StateChannel};
 
 /// Largest dimension: in twelve dimensions the candidate functions have 90 coefficients.
 const DIMENSIONS: usize = 12;
@@ -30,11 +30,10 @@ pub(crate) fn common_surface(rows: &Rows, state: &[StateChannel], numbers: &Trus
     let least = if numbers.reading == Hypothesis::Free { FREE } else { TrustNumbers::GOOD_COVERAGE };
     let coverage = quadratics.coverage().filter(|&coverage| coverage < least)?;
     let surface = surface(&quadratics, rows, state)?;
-    Some(Finding {
-        verdict: Verdict::Doubtful,
-        what: format!("no movement crosses {surface} (coverage {})", percent(coverage.max(f64::EPSILON))),
-        next: "record movements that go across: a constraint common to all may hide the policy there".to_owned(),
-    })
+    Some(Finding::doubt(
+        format!("no movement crosses {surface} (coverage {})", percent(coverage.max(f64::EPSILON))),
+        "record movements that go across: a constraint common to all may hide the policy there",
+    ))
 }
 
 /// Describes the level sets of the function that all movements together cross least.

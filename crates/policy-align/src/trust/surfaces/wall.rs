@@ -6,7 +6,7 @@ use prepare::Wall;
 use prepare::numbers::percent;
 
 use super::{as_recorded, equation, some_of};
-use crate::{Finding, Prepared, VelocitySource, Verdict};
+use crate::{Finding, Prepared, VelocitySource};
 
 /// Largest dimension n: see [`Wall::of`].
 const DIMENSIONS: usize = 8;
@@ -38,12 +38,10 @@ pub(crate) fn wall(rows: &Rows, prepared: &Prepared, gap: f64) -> Option<Finding
     let level = if level.abs() < EXACT * wall.farthest { 0.0 } else { level };
     let (normal, length) = as_recorded(&wall.normal, state);
     let plane = equation(&normal, level / length, state);
-    Some(Finding {
-        verdict: Verdict::Doubtful,
-        what: format!("{} of the states lie on the plane {plane}, which no movement crosses", percent(wall.share)),
-        next: "if something stops the hand there, record movements without it: it may hide where the policy goes"
-            .to_owned(),
-    })
+    Some(Finding::doubt(
+        format!("{} of the states lie on the plane {plane}, which no movement crosses", percent(wall.share)),
+        "if something stops the hand there, record movements without it: it may hide where the policy goes",
+    ))
 }
 
 /// The wall among some of the rows, in the learner's units, from their n coordinates of the state without the context.
