@@ -22,7 +22,7 @@ impl Verdict {
 }
 
 /// An anomaly of recordings or a policy. Findings with [`Verdict::Good`] are remarks.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Finding {
     /// Its severity.
@@ -31,12 +31,50 @@ pub struct Finding {
     pub what: String,
     /// The next step.
     pub next: String,
+    /// What it is about. Files do not store it, so findings are equal without it.
+    #[serde(skip)]
+    pub topic: Topic,
 }
+
+/// Findings that later steps withdraw or resolve.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Topic {
+    /// None of these.
+    #[default]
+    Other,
+    /// A channel in another unit than the others.
+    MixedUnits,
+    /// A direction in which the velocity is the same everywhere.
+    Pressing,
+    /// A speed limit.
+    SpeedLimit,
+}
+
+impl Topic {
+    /// Whether the scales of channels determine the finding.
+    pub fn depends_on_scale(self) -> bool {
+        self != Topic::Other
+    }
+}
+
+impl PartialEq for Finding {
+    fn eq(&self, other: &Self) -> bool {
+        (self.verdict, &self.what, &self.next) == (other.verdict, &other.what, &other.next)
+    }
+}
+
+impl Eq for Finding {}
 
 impl Finding {
     /// A finding of some severity.
     pub fn new(verdict: Verdict, what: impl Into<String>, next: impl Into<String>) -> Self {
-        Finding { verdict, what: what.into(), next: next.into() }
+        Finding { verdict, what: what.into(), next: next.into(), topic: Topic::Other }
+    }
+
+    /// The same about a topic.
+    #[must_use]
+    pub fn on(self, topic: Topic) -> Self {
+        Finding { topic, ..self }
     }
 
     /// A finding with [`Verdict::Doubtful`].

@@ -84,7 +84,7 @@ mod trajectory;
 pub use angles::{is_in_degrees, unwrap_angle};
 pub use demonstrations::Demonstrations;
 pub use error::{MotionError, Series};
-pub use finding::{Decision, Finding, LeftOut, Subject, Verdict};
+pub use finding::{Decision, Finding, LeftOut, Subject, Topic, Verdict};
 pub use learner::{Certainty, LearnError, Learner, LearntPolicy};
 pub use mean::{mean_and_error, spread, standard_deviation};
 pub use median::{median, upper_median};

@@ -99,7 +99,7 @@ pub use learnt::Learnt;
 pub use leave_out::{ConstraintLeftOut, leave_constraints_out};
 pub use model::{DataSummary, FileSummary, MadeBy, Model, PredictedSpeed};
 pub use model_policy::{ModelPolicy, ModelPotential};
-pub use motion::{Decision, Finding, LeftOut, Subject, Verdict};
+pub use motion::{Decision, Finding, LeftOut, Subject, Topic, Verdict};
 pub use named::{ConstraintOn, ConstraintStretch, TaskLinks, constraint_file, estimate_constraints};
 pub use prepare::{
     ContextUse, Noise, PrepareError, PrepareOptions, Prepared, Repair, Smoothing, StateChannel, VelocitySource,

@@ -71,7 +71,7 @@ pub use directions::directions;
 pub use error::PrepareError;
 pub use options::{ContextUse, PrepareOptions, Repair, Smoothing, VelocityUse};
 pub use prepared::Prepared;
-pub use remarks::{end_places, pressing};
+pub use remarks::end_places;
 pub use samples::least_noisy::with_less_noise;
 pub use samples::noise::Noise;
 pub use samples::smooth::with_slopes;

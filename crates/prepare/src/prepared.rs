@@ -67,8 +67,7 @@ impl Prepared {
         let demonstrations = Demonstrations::new(movements.collect::<Result<_, _>>()?)?;
         let scaled = |(of, factor): (&StateChannel, &f64)| StateChannel { scale: of.scale * factor, ..of.clone() };
         let state: Vec<StateChannel> = self.state.iter().zip(factors).map(scaled).collect();
-        let before = remarks::of_scale(&self.demonstrations, &self.state, &self.noise);
-        let others = self.findings.iter().filter(|finding| !before.contains(finding)).cloned();
+        let others = self.findings.iter().filter(|finding| !finding.topic.depends_on_scale()).cloned();
         let anew = noise::of(&demonstrations);
         let noise = match self.smoothing {
             Smoothing::Auto | Smoothing::Off => {

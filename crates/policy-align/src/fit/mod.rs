@@ -117,7 +117,7 @@ pub fn fit_with(
     }
     if let Some(push) = readings.slope().report().push.filter(|&push| push > 0.0) {
         let learnt = options.learner != LearnerChoice::PolicyAlign && takes_slope(&readings, options.learner);
-        pushed(push, learnt, prepared, &mut findings);
+        pushed(push, learnt, &mut findings);
     }
     let from_pushes = takes_slope(&readings, options.learner) && readings.slope().report().push.is_some();
     findings.extend(along_the_motion(policy, &rows, prepared, &numbers, from_pushes));

@@ -1,8 +1,6 @@
 //! Findings on constraints that push.
 
-use prepare::{Prepared, pressing};
-
-use crate::{Finding, Verdict};
+use crate::{Finding, Topic, Verdict};
 
 /// Pushes below this share of the policy's speed are negligible. If movements are only predictable with such pushes, they differ in
 /// something else.
@@ -10,7 +8,7 @@ const PUSHES: f64 = 0.01;
 
 /// Adds a finding on pushes of a share `push` of the policy's speed. It is a remark if the policy was learnt in spite of them, which also
 /// resolves the finding on a press; otherwise it is a doubt.
-pub(crate) fn pushed(push: f64, learnt: bool, prepared: &Prepared, findings: &mut Vec<Finding>) {
+pub(crate) fn pushed(push: f64, learnt: bool, findings: &mut Vec<Finding>) {
     let what = format!("constraints pushed, on average with {:.0} % of the policy's speed", 100.0 * push);
     let finding = match learnt {
         true if push < PUSHES => Finding::doubt(
@@ -18,7 +16,7 @@ pub(crate) fn pushed(push: f64, learnt: bool, prepared: &Prepared, findings: &mu
             "if that is a goal, an object or a load, record it and name its columns with --context",
         ),
         true => {
-            settle(prepared, findings);
+            settle(findings);
             let next = "the policy was learnt from the directions in which velocities differ: nothing to do";
             Finding::remark(what, next)
         }
@@ -28,8 +26,7 @@ pub(crate) fn pushed(push: f64, learnt: bool, prepared: &Prepared, findings: &mu
 }
 
 /// The policy was learnt from presses along varying directions, so the finding on them becomes a remark.
-fn settle(prepared: &Prepared, findings: &mut [Finding]) {
-    let press = pressing(&prepared.demonstrations, &prepared.state);
-    let of_press = findings.iter_mut().filter(|finding| Some(&**finding) == press.as_ref());
+fn settle(findings: &mut [Finding]) {
+    let of_press = findings.iter_mut().filter(|finding| finding.topic == Topic::Pressing);
     of_press.for_each(|finding| finding.verdict = Verdict::Good);
 }

@@ -11,11 +11,11 @@ mod speed_limit;
 
 pub use end_places::end_places;
 pub(crate) use held::held;
-use motion::{Demonstrations, Finding, Trajectory, Verdict, standard_deviation};
+use motion::{Demonstrations, Finding, Topic, Trajectory, Verdict, standard_deviation};
 pub(crate) use no_state::no_state;
 pub(crate) use odd_channels::{is_switch, odd_channels};
 pub(crate) use other_units::other_units;
-pub use pressing::pressing;
+use pressing::pressing;
 use speed_limit::speed_limit;
 
 use crate::StateChannel;
@@ -41,8 +41,9 @@ pub(crate) fn about(demonstrations: &Demonstrations, state: &[StateChannel], noi
 
 /// Findings that depend on the scale of each channel.
 pub(crate) fn of_scale(demonstrations: &Demonstrations, state: &[StateChannel], noise: &Noise) -> Vec<Finding> {
-    let mixed = mixed_units(&spreads(demonstrations), state);
-    let (press, limit) = (pressing(demonstrations, state), speed_limit(demonstrations, state, noise));
+    let mixed = mixed_units(&spreads(demonstrations), state).map(|finding| finding.on(Topic::MixedUnits));
+    let press = pressing(demonstrations, state).map(|finding| finding.on(Topic::Pressing));
+    let limit = speed_limit(demonstrations, state, noise).map(|finding| finding.on(Topic::SpeedLimit));
     [mixed, press, limit].into_iter().flatten().collect()
 }
 

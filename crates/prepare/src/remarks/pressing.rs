@@ -19,7 +19,7 @@ const MOVES: f64 = 0.05;
 
 /// Reports that a press, a conveyor or a clock hides the policy in some direction, in which the velocity is the same in all movements and
 /// not 0. `state` names the channels of the demonstrations, (n).
-pub fn pressing(demonstrations: &Demonstrations, state: &[StateChannel]) -> Option<Finding> {
+pub(super) fn pressing(demonstrations: &Demonstrations, state: &[StateChannel]) -> Option<Finding> {
     let steady = steady(demonstrations)?;
     let direction = direction_by_channels(steady.direction.as_slice(), state);
     Some(Finding::doubt(
