@@ -14,8 +14,6 @@ const OWN: f64 = 0.35;
 const UNPREDICTED: f64 = 0.1;
 /// Ridge of the estimate of that velocity, as a share of the number of its rows.
 const RIDGE: f64 = 0.05;
-/// Noise above this share of the squared steps is a sufficient explanation.
-const NOISY: f64 = 0.1;
 const NEXT: &str = "if the goal, an object or a load differs, record it and name its columns with --context, or learn each goal from its own movements";
 
 /// A finding on how movements differ if the policy does not predict them. There is none if the policy predicts them, however many goals
@@ -25,7 +23,8 @@ pub(crate) fn differing_goals(
     prepared: &Prepared,
     numbers: &TrustNumbers,
 ) -> Option<Finding> {
-    if predicts(numbers) || numbers.step_noise > NOISY {
+    // Noise is a sufficient explanation.
+    if predicts(numbers) || prepared.noise.is_noisy() {
         return None;
     }
     let places = end_places(&prepared.demonstrations).filter(|&places| places > 1);

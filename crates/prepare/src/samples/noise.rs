@@ -12,8 +12,6 @@ use crate::repairs::agreement::Agreement;
 
 /// Positions count as exact if noise is less than this share of the squared steps.
 const EXACT: f64 = 0.01;
-/// Share of noise in the squared steps above which positions are noisy.
-const NOISY: f64 = 0.1;
 /// Up to this share of their squares, noise of velocities does not prevent them from correcting positions.
 const CORRECTING: f64 = 1e-3;
 /// Velocities with more noise than this are worth less than positions.
@@ -38,9 +36,12 @@ pub struct Noise {
 }
 
 impl Noise {
+    /// Share of noise in the squared steps above which positions are noisy.
+    pub const NOISY: f64 = 0.1;
+
     /// Whether noise makes up so much of the steps that it is reported, and positions are smoothed before they are integrated.
     pub fn is_noisy(&self) -> bool {
-        self.step_share > NOISY
+        self.step_share > Noise::NOISY
     }
 
     /// Whether recorded velocities are exact enough to correct positions, or to make smoothing unnecessary.

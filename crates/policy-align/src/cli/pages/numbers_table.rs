@@ -2,6 +2,7 @@
 
 use maud::{Markup, html};
 use policy_align::TrustNumbers;
+use prepare::Noise;
 
 use crate::cli::lines::{counted, short};
 use crate::cli::pages::page_parts::{Column, table};
@@ -11,7 +12,7 @@ const COLUMNS: [Column; 3] = [("What", ""), ("Value", "value"), ("Good is", "")]
 /// Numbers on both pages, with their criteria.
 pub(crate) const COVERAGE: (&str, Good) =
     ("Coverage of the least observed direction; 1 if all are alike", Good::Above(TrustNumbers::GOOD_COVERAGE));
-pub(crate) const NOISE: (&str, Good) = ("Share of noise in the squared steps", Good::Below(0.1));
+pub(crate) const NOISE: (&str, Good) = ("Share of noise in the squared steps", Good::Below(Noise::NOISY));
 
 /// Criterion for a good value of a number.
 #[derive(Debug, Clone, Copy, PartialEq)]
