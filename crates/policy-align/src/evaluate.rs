@@ -4,8 +4,8 @@ use motion::{LearntPolicy, Policy};
 use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 
-use crate::along::along;
-use crate::fit::{held_out, rows};
+use crate::along::{along, error_along_motion};
+use crate::fit::rows;
 use crate::{FitError, Model, Prepared};
 
 /// Errors of a policy on movements.
@@ -50,11 +50,11 @@ pub fn evaluate(model: &Model, prepared: &Prepared, truth: Option<&Truth>) -> Re
     }
     let rows = rows(prepared)?;
     let all: Vec<usize> = (0..rows.len()).collect();
-    let total = held_out(policy, &rows, &all, None);
+    let total = error_along_motion(policy, &rows, &all, None);
     let mut episodes = vec![None; prepared.demonstrations.n_trajectories()];
     let trajectory = |row: usize| rows.indices()[row].trajectory;
     for own in all.chunk_by(|&a, &b| trajectory(a) == trajectory(b)) {
-        let error = held_out(policy, &rows, own, None).to_choose();
+        let error = error_along_motion(policy, &rows, own, None).relative_to_motion();
         episodes[trajectory(own[0])] = error.is_finite().then_some(error);
     }
     let (nupe, ncpe) = match truth {
@@ -62,10 +62,10 @@ pub fn evaluate(model: &Model, prepared: &Prepared, truth: Option<&Truth>) -> Re
         Some(truth) => against(policy, prepared, truth)?,
     };
     Ok(Evaluation {
-        slope_error: total.to_choose(),
-        policy_error: total.to_judge(),
+        slope_error: total.relative_to_motion(),
+        policy_error: total.relative_to_policy(),
         episodes,
-        residuals: along(policy, &rows).map(|row| row.wanted - row.speed).collect(),
+        residuals: along(policy, &rows).map(|row| row.predicted - row.speed).collect(),
         supported: supported(model, &rows),
         nupe,
         ncpe,

@@ -4,8 +4,8 @@
 use align::{Aligned, Bandwidth, Integration, LwprRegressor, PolicyAlign, PotentialPolicy};
 use gp::Rows;
 use lwpr::LwprParams;
-use motion::{Demonstrations, LearntPolicy, Potential};
-use nalgebra::{DMatrix, DVector};
+use motion::{Demonstrations, Potential};
+use nalgebra::DMatrix;
 use prepare::numbers::squared_error;
 
 use rand::SeedableRng;
@@ -16,6 +16,7 @@ use smoothing::SavitzkyGolay;
 use super::options::FitOptions;
 use super::progress::Progress;
 use super::recorded_rows::averaged;
+use crate::along::{ErrorAlongMotion, error_along_motion};
 use crate::{Decision, FitError, Prepared, Smoothing, Subject, VelocitySource};
 
 /// Candidate values of `init_d`: one over the squared width of receptive fields, in units of the states' spread.
@@ -30,49 +31,9 @@ pub(crate) struct AlignedFit {
     pub(crate) sigma_squared: f64,
     pub(crate) decisions: Vec<Decision>,
     /// Held-out errors with the chosen settings.
-    pub(crate) held_out: HeldOut,
+    pub(crate) held_out: ErrorAlongMotion,
     /// Root mean square of the potentials' disagreement after alignment, over their standard deviation.
     pub(crate) residual: f64,
-}
-
-/// Σ (uᵀπ̂/r − r)² over held-out samples, and sums for comparison.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub(crate) struct HeldOut {
-    pub(crate) squares: f64,
-    /// Σ r².
-    pub(crate) observed: f64,
-    /// Σ ‖π̂‖².
-    pub(crate) predicted: f64,
-    /// Σ ‖π̂ − π̂_GP‖², π̂_GP from the Gaussian process learnt from all movements.
-    pub(crate) differences: f64,
-    pub(crate) samples: usize,
-    /// Samples outside the policy's support.
-    pub(crate) unsupported: usize,
-}
-
-impl HeldOut {
-    /// E: 0 means that left-out movements are predicted exactly, 1 is as good as standing still.
-    pub(crate) fn to_choose(self) -> f64 {
-        self.squares / self.observed
-    }
-
-    /// E′: the error relative to the policy, since a policy may be right even if constraints hardly let it move. A policy that
-    /// is zero everywhere has the error 1.
-    pub(crate) fn to_judge(self) -> f64 {
-        let share = self.squares / self.predicted;
-        if share.is_finite() { share } else { 1.0 }
-    }
-
-    fn plus(self, other: HeldOut) -> HeldOut {
-        HeldOut {
-            squares: self.squares + other.squares,
-            observed: self.observed + other.observed,
-            predicted: self.predicted + other.predicted,
-            differences: self.differences + other.differences,
-            samples: self.samples + other.samples,
-            unsupported: self.unsupported + other.unsupported,
-        }
-    }
 }
 
 /// One point of the grid, with its error in every fold.
@@ -80,17 +41,17 @@ struct Tried {
     bandwidth: Bandwidth,
     sigma_squared: f64,
     init_d: f64,
-    folds: Vec<HeldOut>,
+    folds: Vec<ErrorAlongMotion>,
 }
 
 impl Tried {
-    fn total(&self) -> HeldOut {
-        self.folds.iter().copied().fold(HeldOut::default(), HeldOut::plus)
+    fn total(&self) -> ErrorAlongMotion {
+        self.folds.iter().copied().fold(ErrorAlongMotion::default(), ErrorAlongMotion::plus)
     }
 
     /// Standard error of E over the folds.
     fn standard_error(&self) -> f64 {
-        let errors: Vec<f64> = self.folds.iter().map(|fold| fold.to_choose()).collect();
+        let errors: Vec<f64> = self.folds.iter().map(|fold| fold.relative_to_motion()).collect();
         motion::mean_and_error(&errors).1
     }
 }
@@ -136,7 +97,7 @@ pub(super) fn fit(
         "best of {} by cross-validation over {} folds of episodes: error relative to the motion {}",
         tried.len(),
         best.folds.len(),
-        squared_error(best.total().to_choose())
+        squared_error(best.total().relative_to_motion())
     );
     let given = |flag: bool| if flag { "given".to_owned() } else { why_best.clone() };
     decisions.push(Decision::new(
@@ -205,9 +166,9 @@ fn grid(
         let errors = sizes.iter().map(|&init_d| {
             let mut rng = ChaCha8Rng::seed_from_u64(options.seed);
             rng.set_stream(1 + fold as u64);
-            Ok(held_out(&aligned.learn(&regressor(init_d), &mut rng)?, rows, &test, Some(reference)))
+            Ok(error_along_motion(&aligned.learn(&regressor(init_d), &mut rng)?, rows, &test, Some(reference)))
         });
-        errors.collect::<Result<Vec<HeldOut>, FitError>>()
+        errors.collect::<Result<Vec<ErrorAlongMotion>, FitError>>()
     };
     let results: Vec<_> = jobs.par_iter().map(fold_errors).collect();
     for ((sigma_squared, _), errors) in jobs.iter().zip(results) {
@@ -223,7 +184,7 @@ fn grid(
 /// `init_d`.
 fn choose(tried: &[Tried]) -> Option<&Tried> {
     let error = |tried: &Tried| {
-        let error = tried.total().to_choose();
+        let error = tried.total().relative_to_motion();
         if error.is_finite() { error } else { f64::INFINITY }
     };
     let best = tried.iter().min_by(|a, b| error(a).total_cmp(&error(b)))?;
@@ -239,35 +200,6 @@ fn folds(episodes: usize, options: &FitOptions) -> Vec<Vec<usize>> {
     order.shuffle(&mut ChaCha8Rng::seed_from_u64(options.seed));
     let count = options.folds.min(episodes);
     (0..count).map(|fold| order.iter().copied().skip(fold).step_by(count).collect()).collect()
-}
-
-/// Errors of a policy that predicts the speed of the `test` rows along their direction of motion.
-///
-/// `reference`: another policy at every row, (n, M), for comparison.
-pub(crate) fn held_out(
-    policy: &dyn LearntPolicy,
-    rows: &Rows,
-    test: &[usize],
-    reference: Option<&DMatrix<f64>>,
-) -> HeldOut {
-    let mut sums = HeldOut::default();
-    let mut action = DVector::zeros(policy.dim());
-    for &row in test {
-        let (x, u) = (rows.states().column(row), rows.velocities().column(row));
-        let variance = rows.variances().map_or(0.0, |variances| variances[row]);
-        let r = u.norm();
-        if r == 0.0 || r * r < 9.0 * variance * rows.dim() as f64 {
-            continue;
-        }
-        policy.action_into(x, action.as_view_mut());
-        sums.squares += (u.dot(&action.rows(0, u.len())) / r - r).powi(2);
-        sums.observed += r * r;
-        sums.predicted += action.norm_squared();
-        sums.differences += reference.map_or(0.0, |reference| (&action - reference.column(row)).norm_squared());
-        sums.samples += 1;
-        sums.unsupported += usize::from(policy.support(x) == 0.0);
-    }
-    sums
 }
 
 fn residual(aligned: &Aligned, policy: &PotentialPolicy) -> f64 {

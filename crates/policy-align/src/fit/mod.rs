@@ -13,7 +13,6 @@ mod progress;
 mod recorded_rows;
 mod units;
 
-pub(crate) use aligning::held_out;
 pub use digest::Digest;
 pub(crate) use digest::made_beside;
 pub use options::{FitOptions, LearnerChoice};
@@ -202,7 +201,7 @@ fn numbers(
     let takes_slope = takes_slope(readings, options.learner);
     let slope_error = of.a_s * (1.0 - of.hidden);
     let held_out_error = match aligned {
-        Some(aligned) => aligned.held_out.to_judge(),
+        Some(aligned) => aligned.held_out.relative_to_policy(),
         None if takes_slope => slope_error,
         None => of.a_d,
     };

@@ -4,7 +4,7 @@ use nalgebra::Vector2;
 use prepare::numbers::percent;
 
 use crate::Finding;
-use crate::along::{Along, LEAST_T, Regression};
+use crate::along::{LEAST_T, MotionSample, Regression};
 
 /// Least missing speed, as a share of the root mean square. Its t over movements is 5 and more with friction, below 3.5 with all else. The
 /// policy absorbs some of it, so that the share is too low.
@@ -12,7 +12,7 @@ const MISSING: f64 = 0.01;
 
 /// A finding if movements that constraints deflect are slower than r = nᵀπ by about the same amount everywhere. `rows`: number of all rows;
 /// `movements` holds those that move.
-pub(crate) fn friction(movements: &[Vec<Along>], rows: usize) -> Option<Finding> {
+pub(crate) fn friction(movements: &[Vec<MotionSample>], rows: usize) -> Option<Finding> {
     let (missing, t) = missing_speed(movements, rows)?;
     (missing > MISSING && t > LEAST_T).then(|| Finding::doubt(
         format!(
@@ -24,8 +24,8 @@ pub(crate) fn friction(movements: &[Vec<Along>], rows: usize) -> Option<Finding>
 }
 
 /// Least squares of r − nᵀπ̂ = −f + ε nᵀπ̂ over rows: f relative to the root mean square speed, and its t with movements as the units.
-fn missing_speed(movements: &[Vec<Along>], rows: usize) -> Option<(f64, f64)> {
-    let missing = Regression::of(movements, |sample| Vector2::new(-1.0, sample.wanted))?;
+fn missing_speed(movements: &[Vec<MotionSample>], rows: usize) -> Option<(f64, f64)> {
+    let missing = Regression::of(movements, |sample| Vector2::new(-1.0, sample.predicted))?;
     let power: f64 = movements.iter().flatten().map(|sample| sample.speed * sample.speed).sum();
     Some((missing.coefficient / (power / rows as f64).sqrt(), missing.t))
 }

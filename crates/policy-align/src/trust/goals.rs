@@ -6,7 +6,7 @@ use prepare::{Prepared, end_places};
 
 use super::numbers::TrustNumbers;
 use crate::Finding;
-use crate::along::Along;
+use crate::along::MotionSample;
 
 /// Least share of the policy's residuals that a constant velocity of each movement must explain.
 const OWN: f64 = 0.35;
@@ -19,7 +19,7 @@ const NEXT: &str = "if the goal, an object or a load differs, record it and name
 /// A finding on how movements differ if the policy does not predict them. There is none if the policy predicts them, however many goals
 /// there are.
 pub(crate) fn differing_goals(
-    movements: &[Vec<Along>],
+    movements: &[Vec<MotionSample>],
     prepared: &Prepared,
     numbers: &TrustNumbers,
 ) -> Option<Finding> {
@@ -49,8 +49,8 @@ fn predicts(numbers: &TrustNumbers) -> bool {
 }
 
 /// Share of Σ(r − nᵀπ̂)² that nᵀc explains with one c (n) per movement, estimated from every other quarter of it.
-fn own_share(movements: &[Vec<Along>]) -> Option<f64> {
-    let row = |sample: &Along| (sample.direction.clone(), sample.speed - sample.wanted);
+fn own_share(movements: &[Vec<MotionSample>]) -> Option<f64> {
+    let row = |sample: &MotionSample| (sample.direction.clone(), sample.speed - sample.predicted);
     let errors: Vec<Vec<Row>> = movements.iter().map(|samples| samples.iter().map(row).collect()).collect();
     let all = errors.iter().flatten().map(|(_, error)| error * error).sum::<f64>();
     let left = |errors: &Vec<Row>| {

@@ -4,7 +4,7 @@ use gp::Rows;
 use motion::mean_and_error;
 use prepare::numbers::percent_of_all;
 
-use crate::along::{Along, FEW, LEAST_T};
+use crate::along::{FEW, LEAST_T, MotionSample};
 use crate::{Finding, Verdict};
 
 /// The beginning of a movement is one in this many samples.
@@ -18,18 +18,18 @@ const MUCH: f64 = 0.4;
 #[derive(Debug, Clone, Copy, Default)]
 struct Lack {
     missing: f64,
-    wanted: f64,
+    predicted: f64,
 }
 
 impl Lack {
     fn share(self) -> Option<f64> {
-        (self.wanted > 0.0).then(|| self.missing / self.wanted)
+        (self.predicted > 0.0).then(|| self.missing / self.predicted)
     }
 }
 
 /// A finding if movements are slower than nᵀπ in their first tenth, but not afterwards. A hand or robot that accelerates from rest does
 /// not follow a policy of the state alone.
-pub(crate) fn slow_starts(movements: &[Vec<Along>], rows: &Rows) -> Option<Finding> {
+pub(crate) fn slow_starts(movements: &[Vec<MotionSample>], rows: &Rows) -> Option<Finding> {
     let (missing, t) = missing_at_starts(movements, rows)?;
     (missing > MISSING && t > LEAST_T).then(|| {
         Finding::new(
@@ -44,15 +44,15 @@ pub(crate) fn slow_starts(movements: &[Vec<Along>], rows: &Rows) -> Option<Findi
 }
 
 /// The share of speed missing at the beginning minus that missing later, as a mean over movements, and its t.
-fn missing_at_starts(movements: &[Vec<Along>], rows: &Rows) -> Option<(f64, f64)> {
+fn missing_at_starts(movements: &[Vec<MotionSample>], rows: &Rows) -> Option<(f64, f64)> {
     let mut lasts = vec![0; movements.len()];
     rows.indices().iter().for_each(|index| lasts[index.trajectory] = index.sample.max(lasts[index.trajectory]));
-    let difference = |(samples, last): (&Vec<Along>, usize)| {
+    let difference = |(samples, last): (&Vec<MotionSample>, usize)| {
         let mut lacks = [Lack::default(); 2];
-        for &Along { sample, speed, wanted, .. } in samples {
-            let lack = &mut lacks[usize::from(sample * BEGINNING > last)];
-            lack.missing += (wanted - speed) * wanted;
-            lack.wanted += wanted * wanted;
+        for &MotionSample { index, speed, predicted, .. } in samples {
+            let lack = &mut lacks[usize::from(index.sample * BEGINNING > last)];
+            lack.missing += (predicted - speed) * predicted;
+            lack.predicted += predicted * predicted;
         }
         let [first, later] = lacks;
         Some(first.share()? - later.share()?)

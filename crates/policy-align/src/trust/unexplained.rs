@@ -4,7 +4,7 @@ use nalgebra::Vector2;
 use prepare::numbers::percent_of_all;
 
 use crate::Finding;
-use crate::along::{Along, LEAST_T, Regression};
+use crate::along::{LEAST_T, MotionSample, Regression};
 
 /// Share of the squared velocities above which a policy is doubtful.
 const MUCH: f64 = 0.05;
@@ -28,28 +28,30 @@ struct Unexplained {
 }
 
 impl Unexplained {
-    fn of(movements: Vec<Vec<Along>>) -> Self {
+    fn of(movements: Vec<Vec<MotionSample>>) -> Self {
         let powers: Vec<f64> = movements.iter().flatten().map(|sample| sample.speed * sample.speed).collect();
         let slow = SLOW * (powers.iter().sum::<f64>() / powers.len() as f64).sqrt();
-        let fast = |samples: Vec<Along>| samples.into_iter().filter(|sample| sample.speed > slow).collect();
-        let movements: Vec<Vec<Along>> = movements.into_iter().map(fast).collect();
-        let error = |sample: &Along| sample.speed - sample.wanted;
-        let over = |of: &dyn Fn(&Along) -> f64| movements.iter().flatten().map(of).sum::<f64>();
+        let fast = |samples: Vec<MotionSample>| samples.into_iter().filter(|sample| sample.speed > slow).collect();
+        let movements: Vec<Vec<MotionSample>> = movements.into_iter().map(fast).collect();
+        let error = |sample: &MotionSample| sample.speed - sample.predicted;
+        let over = |of: &dyn Fn(&MotionSample) -> f64| movements.iter().flatten().map(of).sum::<f64>();
         let squares = over(&|sample| error(sample).powi(2));
         let pairs = movements.iter().flat_map(|samples| samples.windows(2));
-        let pairs = pairs.filter(|pair| pair[0].sample + 1 == pair[1].sample);
+        let pairs = pairs.filter(|pair| pair[0].index.sample + 1 == pair[1].index.sample);
         let products: f64 = pairs.map(|pair| error(&pair[0]) * error(&pair[1])).sum();
         Unexplained {
             share: squares / over(&|sample| sample.speed.powi(2)),
             persistence: products / squares,
-            timed: Regression::of(&movements, |sample| sample.wanted * Vector2::new(sample.sample as f64, 1.0)),
+            timed: Regression::of(&movements, |sample| {
+                sample.predicted * Vector2::new(sample.index.sample as f64, 1.0)
+            }),
         }
     }
 }
 
 /// A finding if noise-free velocities depend on more than the state. If left-out movements are not `predicted` either, it is only made
 /// if time is the cause.
-pub(crate) fn unexplained(movements: Vec<Vec<Along>>, predicted: bool) -> Option<Finding> {
+pub(crate) fn unexplained(movements: Vec<Vec<MotionSample>>, predicted: bool) -> Option<Finding> {
     let Unexplained { share, persistence, timed } = Unexplained::of(movements);
     let timed = timed.filter(|timed| timed.share > TIMED && timed.t.abs() > LEAST_T);
     let (cause, bound) = match &timed {
@@ -76,7 +78,7 @@ mod tests {
     use crate::along::{Bowl, along_movements};
 
     /// Twelve movements of 40 samples in the bowl, with velocities times `gain` of the movement and the time, 0 to 1.
-    fn movements(seed: u32, gain: impl Fn(usize, f64) -> f64) -> Vec<Vec<Along>> {
+    fn movements(seed: u32, gain: impl Fn(usize, f64) -> f64) -> Vec<Vec<MotionSample>> {
         let indices: Vec<SampleIndex> = (0..480).map(|i| SampleIndex { trajectory: i / 40, sample: i % 40 }).collect();
         let time = |index: &SampleIndex| index.sample as f64 / 40.0;
         let state = |index: &SampleIndex| {
