@@ -54,11 +54,11 @@ mod degrees;
 mod direction;
 mod directions;
 mod error;
+mod findings;
 mod notes;
 pub mod numbers;
 mod options;
 mod prepared;
-mod remarks;
 mod repairs;
 mod samples;
 mod scale;
@@ -69,9 +69,9 @@ pub use channel::StateChannel;
 pub use direction::{direction_by_channels, sum_of_parts};
 pub use directions::directions;
 pub use error::PrepareError;
+pub use findings::end_places;
 pub use options::{ContextUse, PrepareOptions, Repair, Smoothing, VelocityUse};
 pub use prepared::Prepared;
-pub use remarks::end_places;
 pub use samples::least_noisy::with_less_noise;
 pub use samples::noise::Noise;
 pub use samples::smooth::with_slopes;
@@ -110,13 +110,13 @@ pub fn prepare<'a>(
     if options.wraps == Repair::Auto {
         repairs::wraps::unwrap(&mut episodes, &state_channels, &mut notes);
     }
-    notes.findings.extend(remarks::odd_channels(&episodes, &state_channels));
+    notes.findings.extend(findings::odd_channels(&episodes, &state_channels));
     if options.jumps == Repair::Auto {
         repairs::glitches::interpolate(&mut episodes, &mut notes);
         repairs::jumps::cut(&mut episodes, &state_channels, &mut notes);
     }
     repairs::episodes::leave_out_still(&mut episodes, &mut notes);
-    notes.findings.extend(remarks::other_units(&episodes, &scales_of(&of_state)));
+    notes.findings.extend(findings::other_units(&episodes, &scales_of(&of_state)));
     repairs::labels::decide(&mut episodes, of_state.len(), &mut notes);
     if episodes.is_empty() {
         // The last cleaning left nothing.
@@ -129,8 +129,8 @@ pub fn prepare<'a>(
     let constraints = episodes.iter().map(|of| Some(of.constraint.as_ref()?.only()?.to_owned())).collect();
     let demonstrations = repairs::episodes::demonstrations(episodes)?;
     let recorded = demonstrations.clone();
-    notes.findings.extend(remarks::no_state(&demonstrations, &state_channels));
-    notes.findings.extend(remarks::held(&demonstrations, &state_channels));
+    notes.findings.extend(findings::velocities_and_clocks(&demonstrations, &state_channels));
+    notes.findings.extend(findings::held_channels(&demonstrations, &state_channels));
     let smoothed = samples::smooth::as_requested(&demonstrations, options.smoothing, &mut notes)?;
     let (demonstrations, velocities) = if let Some(smoothed) = smoothed {
         (smoothed, samples::noise::as_requested(&demonstrations, agreement))
@@ -147,7 +147,7 @@ pub fn prepare<'a>(
     let context = scale::channels(&context_channels, &scales_of(&of_context), contexts);
     context::remark(&demonstrations, &context, &mut notes);
     repairs::stamps::doubt(&demonstrations, &mut notes);
-    remarks::about(&demonstrations, &state, &noise, &mut notes);
+    findings::examine(&demonstrations, &state, &noise, &mut notes);
     degrees::remark(&state, &mut notes);
     samples::still::remark(&demonstrations, noise.positions.as_deref(), (&names, &recorded), &mut notes);
     Ok(Prepared {

@@ -3,7 +3,7 @@ use nalgebra::DVector;
 
 use crate::options::Smoothing;
 use crate::samples::noise::{self, Noise};
-use crate::{StateChannel, VelocitySource, remarks};
+use crate::{StateChannel, VelocitySource, findings};
 
 /// Demonstrations ready for learning, with all decisions and findings.
 #[derive(Debug, Clone, PartialEq)]
@@ -92,7 +92,7 @@ impl Prepared {
         };
         Ok(Prepared {
             velocities,
-            findings: others.chain(remarks::of_scale(&demonstrations, &state, &noise)).collect(),
+            findings: others.chain(findings::depending_on_scale(&demonstrations, &state, &noise)).collect(),
             noise,
             state,
             demonstrations,

@@ -1,9 +1,9 @@
 use motion::anomalies::{LongStep, long_steps};
 use motion::{Channel, Episode, Subject, Verdict};
 
+use crate::findings::is_switch;
 use crate::notes::{Notes, PIECE};
 use crate::numbers::short;
-use crate::remarks::is_switch;
 
 /// Minimum length of a useful piece.
 const LEAST: usize = 4;

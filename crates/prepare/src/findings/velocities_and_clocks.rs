@@ -14,7 +14,7 @@ const EVEN: f64 = 1e-3;
 /// A block of velocities follows a block of positions, with at least two of them in the same unit, or each channel is followed by its
 /// velocity. A clock has no specific name, begins at one value in each of several movements, and increases like time. O(n² stretches + n
 /// samples) for n channels.
-pub(crate) fn no_state(demonstrations: &Demonstrations, channels: &[Channel]) -> Option<Finding> {
+pub(crate) fn velocities_and_clocks(demonstrations: &Demonstrations, channels: &[Channel]) -> Option<Finding> {
     let n = channels.len();
     if n > MOST {
         return None;
@@ -168,7 +168,7 @@ mod tests {
                 std::iter::once(t).filter(|_| clock).chain(own).collect()
             };
             let first = usize::from(clock);
-            let found = no_state(&movements(8, 0.05, sample), &channels(
+            let found = velocities_and_clocks(&movements(8, 0.05, sample), &channels(
                 &["s_0", "s_1", "s_2", "s_3", "s_4", "s_5", "s_6", "s_7", "s_8", "s_9", "s_10"][..2 * n + first],
             ));
             let (end, last) = (first + n - 1, first + 2 * n - 1);
@@ -185,11 +185,11 @@ mod tests {
             let every_second = |from: usize| (0..n).map(|at| names[first + 2 * at + from]).collect::<Vec<_>>().join(",");
             let flags = format!("--state {} --velocity {}", every_second(0), every_second(1));
             let expected = if clock { format!("--time c0 {flags}") } else { flags };
-            let found = no_state(&movements(8, 0.05, alternating), &channels(&names));
+            let found = velocities_and_clocks(&movements(8, 0.05, alternating), &channels(&names));
             prop_assert_eq!(found.map(|finding| finding.next), Some(expected));
             // Positions alone are a state.
             let places = |k: usize, t: f64| (0..n).map(|axis| place(k, axis, t)).collect();
-            let alone = no_state(&movements(8, 0.05, places), &channels(&["x0", "x1", "x2", "x3", "x4", "x5"][..n]));
+            let alone = velocities_and_clocks(&movements(8, 0.05, places), &channels(&["x0", "x1", "x2", "x3", "x4", "x5"][..n]));
             prop_assert_eq!(alone, None);
         }
     }
@@ -209,7 +209,7 @@ mod tests {
         let channels = channels(&["s_0", "s_1", "s_2", "s_3", "s_4", "s_5"]);
         for (spread, how) in [(0.0, ""), (0.8, ", at another time step in each movement")] {
             let long = |k: usize, t: f64| sample(spread)(k, 2.0 * t);
-            let found = no_state(&movements(5, 0.1, long), &channels).unwrap();
+            let found = velocities_and_clocks(&movements(5, 0.1, long), &channels).unwrap();
             assert_eq!(found.next, "--state s_1-2 --velocity s_4-5");
             assert_eq!(found.what, format!("s_4-5 are the velocities of s_1-2{how}: not a part of the state"));
         }
@@ -220,10 +220,10 @@ mod tests {
     #[test]
     fn states_resembling_velocities_or_time_are_kept() {
         let turning = movements(6, 0.05, |k, t| vec![(t + k as f64).sin(), (t + k as f64).cos()]);
-        assert_eq!(no_state(&turning, &channels(&["x0", "x1"])), None);
+        assert_eq!(velocities_and_clocks(&turning, &channels(&["x0", "x1"])), None);
         let rising = |start: f64| movements(6, 0.05, move |k, t| vec![(t * k as f64).sin(), t + start * k as f64]);
-        assert_eq!(no_state(&rising(0.0), &channels(&["x0", "belt"])), None);
-        assert_eq!(no_state(&rising(0.1), &channels(&["x0", "x1"])), None);
-        assert_eq!(no_state(&rising(0.0), &channels(&["x0", "x1"])).unwrap().next, "--time x1");
+        assert_eq!(velocities_and_clocks(&rising(0.0), &channels(&["x0", "belt"])), None);
+        assert_eq!(velocities_and_clocks(&rising(0.1), &channels(&["x0", "x1"])), None);
+        assert_eq!(velocities_and_clocks(&rising(0.0), &channels(&["x0", "x1"])).unwrap().next, "--time x1");
     }
 }

@@ -10,7 +10,7 @@ const NOISE: f64 = 1.5;
 
 /// Reports channels that are held still while noise remains, for example that of an encoder: a fit would mistake the noise for motion in a
 /// separate direction. `None` if all channels are held.
-pub(crate) fn held(demonstrations: &Demonstrations, channels: &[Channel]) -> Option<Finding> {
+pub(crate) fn held_channels(demonstrations: &Demonstrations, channels: &[Channel]) -> Option<Finding> {
     let long = || demonstrations.trajectories().iter().filter(|movement| movement.n_samples() >= SAMPLES);
     let is_held = |axis: &usize| {
         let (mut steps, mut squares) = (0.0, 0.0);

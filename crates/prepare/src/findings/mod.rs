@@ -1,22 +1,22 @@
-//! Further findings before learning.
+//! Findings before learning.
 
 mod end_places;
-mod held;
+mod held_channels;
 mod integrals;
-mod no_state;
 mod odd_channels;
 mod other_units;
 mod pressing;
 mod speed_limit;
+mod velocities_and_clocks;
 
 pub use end_places::end_places;
-pub(crate) use held::held;
+pub(crate) use held_channels::held_channels;
 use motion::{Demonstrations, Finding, Topic, Trajectory, Verdict, standard_deviation};
-pub(crate) use no_state::no_state;
 pub(crate) use odd_channels::{is_switch, odd_channels};
 pub(crate) use other_units::other_units;
 use pressing::pressing;
 use speed_limit::speed_limit;
+pub(crate) use velocities_and_clocks::velocities_and_clocks;
 
 use crate::StateChannel;
 use crate::notes::Notes;
@@ -32,15 +32,20 @@ const LOOP: f64 = 0.05;
 /// Positions have few digits if a step of the last digit is this share of a channel's spread.
 const COARSE: f64 = 0.01;
 
-pub(crate) fn about(demonstrations: &Demonstrations, state: &[StateChannel], noise: &Noise, notes: &mut Notes) {
-    notes.findings.extend(of_scale(demonstrations, state, noise));
-    few(demonstrations, notes);
+/// Adds the findings on movements as a whole.
+pub(crate) fn examine(demonstrations: &Demonstrations, state: &[StateChannel], noise: &Noise, notes: &mut Notes) {
+    notes.findings.extend(depending_on_scale(demonstrations, state, noise));
+    few_movements(demonstrations, notes);
     loops(demonstrations, notes);
     coarse(demonstrations, &spreads(demonstrations), state, notes);
 }
 
 /// Findings that depend on the scale of each channel.
-pub(crate) fn of_scale(demonstrations: &Demonstrations, state: &[StateChannel], noise: &Noise) -> Vec<Finding> {
+pub(crate) fn depending_on_scale(
+    demonstrations: &Demonstrations,
+    state: &[StateChannel],
+    noise: &Noise,
+) -> Vec<Finding> {
     let mixed = mixed_units(&spreads(demonstrations), state).map(|finding| finding.on(Topic::MixedUnits));
     let press = pressing(demonstrations, state).map(|finding| finding.on(Topic::Pressing));
     let limit = speed_limit(demonstrations, state, noise).map(|finding| finding.on(Topic::SpeedLimit));
@@ -75,7 +80,7 @@ fn mixed_units(spreads: &[f64], state: &[StateChannel]) -> Option<Finding> {
     ))
 }
 
-fn few(demonstrations: &Demonstrations, notes: &mut Notes) {
+fn few_movements(demonstrations: &Demonstrations, notes: &mut Notes) {
     let count = demonstrations.n_trajectories();
     if count < FEW {
         let verb = if count == 1 { "is" } else { "are" };
