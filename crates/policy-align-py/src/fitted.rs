@@ -5,8 +5,8 @@ use motion::{Certainty, LearntPolicy as _, Policy as _};
 use nalgebra::DMatrix;
 use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
 use policy_align::{
-    Evaluation, Model, ModelError, PrepareOptions, Progress, TaskLinks, estimate_constraints, evaluate, fit_with,
-    prepare, to_lerobot, write_together,
+    Evaluation, Model, ModelError, PrepareOptions, Progress, StateChannel, TaskLinks, estimate_constraints, evaluate,
+    fit_with, prepare, to_lerobot, write_together,
 };
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
@@ -120,7 +120,7 @@ impl Fitted {
     /// Names of the context's channels that have no value yet.
     #[getter]
     fn context(&self) -> Vec<String> {
-        self.model.open_context().iter().map(|channel| channel.name.clone()).collect()
+        StateChannel::names(self.model.open_context())
     }
 
     /// The same policy in one context.
@@ -260,8 +260,7 @@ impl Fitted {
 impl Fitted {
     /// Options that prepare movements like the training data.
     fn prepared_alike(&self, preparing: Preparing) -> Result<PrepareOptions, Refusal> {
-        let (scale, context) = (self.model.scale(), self.model.context_use());
-        Ok(PrepareOptions { scale, context, ..preparing.options(&[])? })
+        Ok(self.model.prepare_options(preparing.options(&[])?))
     }
 
     /// States as columns, checked.

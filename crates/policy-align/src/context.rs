@@ -3,7 +3,7 @@
 use nalgebra::DVector;
 use thiserror::Error;
 
-use crate::{ContextUse, Model, StateChannel};
+use crate::{ContextUse, Model, PrepareOptions, StateChannel};
 
 /// Reasons why a context cannot be fixed.
 #[derive(Debug, Clone, PartialEq, Error)]
@@ -78,14 +78,20 @@ impl Model {
         Model { chosen_context: DVector::from_iterator(self.context.len(), middle), ..self.clone() }
     }
 
-    /// How to prepare other recordings like those from which the model was learnt.
+    /// Options that prepare recordings in the model's units and context, like those from which it was learnt.
+    #[must_use]
+    pub fn prepare_options(&self, base: PrepareOptions) -> PrepareOptions {
+        PrepareOptions { scale: self.scale(), context: self.context_use(), ..base }
+    }
+
+    /// Which channels are the context of other recordings.
     pub fn context_use(&self) -> ContextUse {
         ContextUse::of(&self.context)
     }
 
     /// Names of the context's channels, (p).
     pub fn context_names(&self) -> Vec<String> {
-        self.context.iter().map(|channel| channel.name.clone()).collect()
+        StateChannel::names(&self.context)
     }
 
     /// The channels of the context unless it is fixed: [`Model::policy`] takes their values after those of the state.
@@ -96,5 +102,10 @@ impl Model {
     /// The channels of all inputs of the learner's policy: the state, then the context.
     pub(crate) fn inputs(&self) -> impl Iterator<Item = &StateChannel> {
         self.state.iter().chain(&self.context)
+    }
+
+    /// Their scales, (n + p).
+    pub(crate) fn input_scales(&self) -> DVector<f64> {
+        StateChannel::scales(self.inputs())
     }
 }

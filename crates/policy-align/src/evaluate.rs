@@ -1,7 +1,7 @@
 use gp::GpError;
 use metrics::{MetricsError, ncpe, nupe};
 use motion::{LearntPolicy, Policy};
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
 
 use crate::along::{along, error_along_motion};
@@ -75,7 +75,7 @@ pub fn evaluate(model: &Model, prepared: &Prepared, truth: Option<&Truth>) -> Re
 /// Share of the rows' states at which the model supports its policy.
 fn supported(model: &Model, rows: &gp::Rows) -> f64 {
     let policy = model.policy();
-    let scales = DVector::from_iterator(policy.dim(), model.inputs().map(|channel| channel.scale));
+    let scales = model.input_scales();
     let states = DMatrix::from_fn(policy.dim(), rows.len(), |k, row| rows.states()[(k, row)] / scales[k]);
     let within = policy.are_supported(states.as_view()).into_iter().filter(|&supported| supported);
     within.count() as f64 / rows.len() as f64

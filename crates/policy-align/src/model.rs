@@ -119,12 +119,12 @@ impl MadeBy {
 impl Model {
     /// Names of the state's channels, (n).
     pub fn channels(&self) -> Vec<String> {
-        self.state.iter().map(|channel| channel.name.clone()).collect()
+        StateChannel::names(&self.state)
     }
 
     /// Factors by which states of the recording are multiplied before the learner's policy is evaluated, (n).
     pub fn scales(&self) -> DVector<f64> {
-        DVector::from_iterator(self.state.len(), self.state.iter().map(|channel| channel.scale))
+        StateChannel::scales(&self.state)
     }
 
     /// Factor of the learner's potential: 1 / s² if all channels share the scale s, otherwise 1.

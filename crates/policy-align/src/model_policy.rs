@@ -47,7 +47,7 @@ impl Model {
     /// The policy in the units of the recording and in the fixed context.
     pub fn policy(&self) -> ModelPolicy<'_> {
         let (learnt, per_unit) = (self.learnt.policy(), self.potential_factor());
-        let scale = DVector::from_iterator(learnt.dim(), self.inputs().map(|channel| channel.scale));
+        let scale = self.input_scales();
         let inputs = Inputs { scale, context: self.chosen_context.clone() };
         let potential = learnt.potential().map(|_| ModelPotential { learnt, inputs: inputs.clone(), per_unit });
         let least_support = match self.learnt {

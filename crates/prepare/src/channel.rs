@@ -1,5 +1,6 @@
 use std::f64::consts::TAU;
 
+use nalgebra::DVector;
 use serde::{Deserialize, Serialize};
 
 /// A dimension of the state or of the context, in the user's units.
@@ -24,6 +25,16 @@ impl StateChannel {
     /// The largest distance from 0 in turns, if the channel is an angle in radians.
     pub fn turns(&self) -> f64 {
         self.low.abs().max(self.high.abs()) / TAU
+    }
+
+    /// Names of the channels.
+    pub fn names<'a>(channels: impl IntoIterator<Item = &'a StateChannel>) -> Vec<String> {
+        channels.into_iter().map(|channel| channel.name.clone()).collect()
+    }
+
+    /// Scales of the channels.
+    pub fn scales<'a>(channels: impl IntoIterator<Item = &'a StateChannel>) -> DVector<f64> {
+        DVector::from_vec(channels.into_iter().map(|channel| channel.scale).collect())
     }
 
     /// Factors of the channels that have one, in the form of [`PrepareOptions::scale`](crate::PrepareOptions::scale).

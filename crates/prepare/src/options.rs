@@ -44,7 +44,7 @@ impl ContextUse {
     pub fn of(channels: &[StateChannel]) -> ContextUse {
         match channels {
             [] => ContextUse::Ignored,
-            channels => ContextUse::Named(channels.iter().map(|channel| channel.name.clone()).collect()),
+            channels => ContextUse::Named(StateChannel::names(channels)),
         }
     }
 }

@@ -66,13 +66,10 @@ pub(crate) fn prepared_for(
     let mut own = config.under("read", reading)?.with_channels_of(model);
     own.elsewhere.clone_from(&reading.elsewhere);
     let reading = own;
-    let mut options = config.under("prepare", preparing)?.options(&reading)?;
-    // The learner's states were multiplied by these scales, so the flags do not matter.
-    options.scale = model.scale();
-    options.context = model.context_use();
+    let options = model.prepare_options(config.under("prepare", preparing)?.options(&reading)?);
     let recordings = read(session, files, &reading)?;
     let prepared = prepare(recordings, &options).map_err(|error| Failure::prepare(&error, named(files)))?;
-    let found: Vec<String> = prepared.state.iter().map(|channel| channel.name.clone()).collect();
+    let found = StateChannel::names(&prepared.state);
     let expected = model.channels();
     if found != expected {
         let what = format!("the channels are {}, the model's {}", found.join(", "), expected.join(", "));

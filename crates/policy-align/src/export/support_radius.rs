@@ -18,7 +18,7 @@ const UNKNOWN: f64 = 0.05;
 /// evenly over the model's bounds.
 pub(super) fn squared_radius(model: &Model, scaled: &ScaledStates<'_>) -> f64 {
     let model = Model { chosen_context: crate::model::nowhere(), ..model.clone() };
-    let scale: Vec<f64> = model.inputs().map(|channel| channel.scale).collect();
+    let scale = model.input_scales();
     let (policy, bounds) = (model.policy(), model.bounds());
     let states: Vec<DVector<f64>> = (1..=STATES).map(|index| between(&bounds, index)).collect();
     let supported = policy.are_supported(DMatrix::from_columns(&states).as_view());

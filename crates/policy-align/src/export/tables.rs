@@ -39,7 +39,7 @@ impl Tables<'_> {
             Learnt::Auto(both) if both.takes_slope() => LearnerTables::slope(model, both.slope()),
             Learnt::Auto(both) => LearnerTables::direct(model, both.direct_of_free_rows()),
         };
-        let scale = DVector::from_vec(model.inputs().map(|channel| channel.scale).collect());
+        let scale = model.input_scales();
         let (bounds, per_unit) = (model.bounds(), model.potential_factor());
         Ok(Tables { scale, bounds, dim: model.state.len(), per_unit, learner })
     }

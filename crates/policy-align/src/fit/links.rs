@@ -7,7 +7,7 @@ use prepare::numbers::squared_error;
 
 use crate::channel_joints::{scales_of_joints, unscaled};
 use crate::named::TaskLinks;
-use crate::{FitError, Prepared};
+use crate::{FitError, Prepared, StateChannel};
 
 /// Names of the task spaces of a robot's links.
 pub(super) struct LinkNames(Vec<String>);
@@ -21,7 +21,7 @@ impl LinkNames {
     ) -> Result<(Rows, Self), FitError> {
         let Some(robot) = robot else { return Ok((rows, LinkNames(Vec::new()))) };
         let refused = |reason: String| FitError::Robot { reason };
-        let channels: Vec<String> = prepared.state.iter().map(|channel| channel.name.clone()).collect();
+        let channels = StateChannel::names(&prepared.state);
         let links = TaskLinks::moved_by(robot, &channels).map_err(refused)?;
         let scales = scales_of_joints(&prepared.state);
         let states = unscaled(&rows.states().rows(0, channels.len()).into_owned(), &scales);

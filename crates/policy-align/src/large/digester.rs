@@ -59,7 +59,7 @@ impl Digester {
     /// [`PartError`], which names the file.
     pub fn digest_piece(&self, further: &FurtherPiece, progress: &mut dyn FnMut(u64)) -> Result<Digest, PartError> {
         let (piece, name) = (&further.piece, further.piece.name());
-        let channels: Vec<String> = self.channels.iter().map(|channel| channel.name.clone()).collect();
+        let channels = StateChannel::names(&self.channels);
         let mut digest = match read_further(piece, &channels, &self.reading, progress) {
             Ok(recordings) => self
                 .digest(recordings, further.rows)
@@ -132,7 +132,7 @@ impl Digester {
         let differ = |what: &str, here: String, before: String| {
             Err(DigestError::Differs { what: what.to_owned(), here, before })
         };
-        let names = |of: &[StateChannel]| of.iter().map(|channel| &*channel.name).collect::<Vec<_>>().join(", ");
+        let names = |channels: &[StateChannel]| StateChannel::names(channels).join(", ");
         if names(channels) != names(&self.channels) {
             return differ("channels", names(channels), names(&self.channels));
         }

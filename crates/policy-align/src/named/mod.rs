@@ -15,7 +15,7 @@ use nalgebra::{DMatrix, DVector, DVectorView};
 use crate::channel_joints::{scales_of_joints, unscaled};
 use crate::fit::{averaged, least_noisy_rows};
 use crate::leave_out::in_units_of;
-use crate::{EvaluateError, Model, Prepared};
+use crate::{EvaluateError, Model, Prepared, StateChannel};
 
 /// Estimates the constraints on movements of a model's channels by comparing them with the model's policy (S26). Labels in the recordings
 /// determine the switches, if they are present. Besides the channels, the `links` of a robot, if given, are candidates for the constrained
@@ -38,7 +38,7 @@ pub fn estimate_constraints(
     }
     let prepared = &in_units_of(model, prepared)?;
     let rows = least_noisy_rows(prepared)?;
-    let scales = DVector::from_iterator(dim, prepared.state.iter().map(|channel| channel.scale));
+    let scales = StateChannel::scales(&prepared.state);
     let of_joints = scales_of_joints(&prepared.state);
     let robot = |reason| EvaluateError::Robot { reason };
     let spaces = |links: &TaskLinks| links.spaces(&unscaled(&rows.states().rows(0, dim).into_owned(), &of_joints));

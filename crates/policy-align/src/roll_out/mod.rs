@@ -21,7 +21,7 @@ use std::collections::BTreeSet;
 use motion::{LearntPolicy as _, Policy as _};
 use nalgebra::{DMatrix, DVector};
 
-use crate::{Model, ModelPolicy};
+use crate::{Model, ModelPolicy, StateChannel};
 use constraint_set::{Fault, Watch};
 use error::LONGEST;
 use holding::Holding;
@@ -96,7 +96,7 @@ impl RollOut {
     pub fn follow(&self, model: &Model, start: &DVector<f64>) -> Result<Path, RollOutError> {
         let open = model.open_context();
         if !open.is_empty() {
-            return Err(RollOutError::Context { names: open.iter().map(|channel| channel.name.clone()).collect() });
+            return Err(RollOutError::Context { names: StateChannel::names(open) });
         }
         let policy = model.policy();
         self.check_start(model, &policy, start)?;

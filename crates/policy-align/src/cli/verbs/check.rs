@@ -2,7 +2,7 @@ use std::cmp::Reverse;
 use std::path::PathBuf;
 
 use clap::Args;
-use policy_align::{Finding, LeftOut, Prepared, TrustNumbers, Verdict};
+use policy_align::{Finding, LeftOut, Prepared, StateChannel, TrustNumbers, Verdict};
 use prepare::{directions, prepare};
 use serde_json::json;
 
@@ -111,7 +111,7 @@ fn reading_otherwise(findings: &[Finding]) -> Option<String> {
 /// Describes the recordings.
 pub(crate) fn about(prepared: &Prepared, files: &str, lines: &mut Lines) {
     let demonstrations = &prepared.demonstrations;
-    let names: Vec<&str> = prepared.state.iter().map(|channel| channel.name.as_str()).collect();
+    let names = StateChannel::names(&prepared.state);
     let velocities = demonstrations.trajectories().iter().all(|movement| movement.velocities().is_some());
     lines.add(
         "recorded",
@@ -127,7 +127,7 @@ pub(crate) fn about(prepared: &Prepared, files: &str, lines: &mut Lines) {
     if let Some(left_out) = left_out(&prepared.left_out) {
         lines.add("left out", &left_out);
     }
-    let range = |channel: &policy_align::StateChannel| {
+    let range = |channel: &StateChannel| {
         let unit = channel.unit.as_deref().map_or(String::new(), |unit| format!(" {unit}"));
         format!("{} {} … {}{unit}", channel.name, short(channel.low), short(channel.high))
     };
