@@ -19,7 +19,7 @@ pub struct Model {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub context: Vec<StateChannel>,
     /// The context fixed by [`Model::in_context`], (p) in the units of the recording; empty without one. It is not stored.
-    #[serde(skip, default = "nowhere")]
+    #[serde(skip, default = "no_context")]
     pub chosen_context: DVector<f64>,
     /// Time step in seconds: the median over trajectories.
     pub time_step: f64,
@@ -39,7 +39,7 @@ pub struct Model {
 }
 
 /// No context.
-pub(crate) fn nowhere() -> DVector<f64> {
+pub(crate) fn no_context() -> DVector<f64> {
     DVector::zeros(0)
 }
 

@@ -17,7 +17,7 @@ const UNKNOWN: f64 = 0.05;
 /// the nearest learnt state instead. The radius is the largest one within which the model supports 95 % of the states, spread
 /// evenly over the model's bounds.
 pub(super) fn squared_radius(model: &Model, scaled: &ScaledStates<'_>) -> f64 {
-    let model = Model { chosen_context: crate::model::nowhere(), ..model.clone() };
+    let model = Model { chosen_context: crate::model::no_context(), ..model.clone() };
     let scale = model.input_scales();
     let (policy, bounds) = (model.policy(), model.bounds());
     let states: Vec<DVector<f64>> = (1..=STATES).map(|index| between(&bounds, index)).collect();

@@ -154,7 +154,7 @@ pub fn fit_with(
     let state = widened(&prepared.state, 0, digests);
     let context = widened(&prepared.context, state.len(), digests);
     let time_step = prepared.time_step;
-    let chosen_context = crate::model::nowhere();
+    let chosen_context = crate::model::no_context();
     let made_by = MadeBy::this();
     let seed = options.seed;
     Ok(Model { made_by, state, context, chosen_context, time_step, data, decisions, seed, trust, predicted, learnt })
