@@ -124,7 +124,7 @@ pub fn prepare<'a>(
         return Err(PrepareError::NothingLeft { of: found, why });
     }
     let noise = repairs::episodes::lent(&mut episodes, samples::noise::of)?;
-    let agreement = repairs::velocities::decide(&mut episodes, options, &state_channels, &noise, &mut notes);
+    let origin = repairs::velocities::decide(&mut episodes, options, &state_channels, &noise, &mut notes);
     let names: Vec<String> = episodes.iter().map(|episode| episode.name.clone()).collect();
     let constraints = episodes.iter().map(|of| Some(of.constraint.as_ref()?.only()?.to_owned())).collect();
     let demonstrations = repairs::episodes::demonstrations(episodes)?;
@@ -133,9 +133,9 @@ pub fn prepare<'a>(
     notes.findings.extend(findings::held_channels(&demonstrations, &state_channels));
     let smoothed = samples::smooth::as_requested(&demonstrations, options.smoothing, &mut notes)?;
     let (demonstrations, velocities) = if let Some(smoothed) = smoothed {
-        (smoothed, samples::noise::as_requested(&demonstrations, agreement))
+        (smoothed, samples::noise::as_requested(&demonstrations, origin))
     } else {
-        let velocities = samples::noise::decide(&demonstrations, &noise, agreement, &mut notes);
+        let velocities = samples::noise::decide(&demonstrations, &noise, origin, &mut notes);
         (demonstrations, velocities)
     };
     let averaged = match velocities {

@@ -1,6 +1,5 @@
 //! Repairs of faulty recordings.
 
-pub(crate) mod agreement;
 pub(crate) mod duplicates;
 pub(crate) mod episodes;
 pub(crate) mod glitches;
@@ -11,4 +10,5 @@ pub(crate) mod quaternions;
 pub(crate) mod stamps;
 pub(crate) mod velocities;
 pub(crate) mod velocity_offset;
+pub(crate) mod velocity_origin;
 pub(crate) mod wraps;

@@ -4,11 +4,10 @@ use nalgebra::DVector;
 use crate::notes::Notes;
 use crate::numbers::{percent, short};
 use crate::options::{PrepareOptions, VelocityUse};
-use crate::repairs::agreement::Agreement;
+use crate::repairs::stamps::{SLOW, UNITS, usual_step};
+use crate::repairs::velocity_origin::VelocityOrigin;
 use crate::repairs::{lag, velocity_offset};
 use crate::samples::noise::Noise;
-
-use crate::repairs::stamps::{SLOW, UNITS, usual_step};
 
 /// Velocities agree with the steps if they differ by at most this factor.
 const AGREE: f64 = 1.25;
@@ -36,7 +35,7 @@ pub(crate) fn decide(
     channels: &[Channel],
     noise: &Noise,
     notes: &mut Notes,
-) -> Agreement {
+) -> VelocityOrigin {
     let recorded = episodes.iter().filter(|episode| episode.velocities.is_some()).count();
     if recorded < episodes.len() || options.velocities == VelocityUse::Ignored {
         discard(episodes);
@@ -55,15 +54,15 @@ pub(crate) fn decide(
             );
         }
         notes.decided(Subject::Velocities, "from positions", why);
-        return Agreement::None;
+        return VelocityOrigin::Missing;
     }
     if options.velocities == VelocityUse::Recorded {
         notes.decided(Subject::Velocities, "recorded", "used as requested");
-        return Agreement::Own;
+        return VelocityOrigin::Measured;
     }
     if lag::repair(episodes, noise, notes) {
         discard(episodes);
-        return Agreement::None;
+        return VelocityOrigin::Missing;
     }
     let mut fit = Steps::of(episodes, noise);
     if let Some((offset, without)) = without_offset(episodes, &fit, noise) {
@@ -80,23 +79,23 @@ pub(crate) fn decide(
             format!("recorded velocities do not match the steps (they explain {explained} of them) and were ignored"),
             "check that these columns are velocities of the same channels in the same order",
         );
-        return Agreement::None;
+        return VelocityOrigin::Missing;
     }
     if fit.agree(1.0) {
         let made = made_of_positions(episodes);
         let (value, why) = match made {
-            Some(Agreement::Differences) => ("from positions", "those recorded are differences of them"),
+            Some(VelocityOrigin::Differences) => ("from positions", "those recorded are differences of them"),
             Some(_) => ("recorded", "recorded; they are differences of the positions"),
             None => ("recorded", "recorded; they agree with the steps"),
         };
         notes.decided(Subject::Velocities, value, why);
-        return made.unwrap_or(Agreement::Own);
+        return made.unwrap_or(VelocityOrigin::Measured);
     }
     let stamps_are_given = options.time_step.is_some() || options.time_unit_given;
     if stamps_are_given || !in_seconds(episodes, &fit, notes) {
         rescale(episodes, &fit, channels, notes);
     }
-    Agreement::Own
+    VelocityOrigin::Measured
 }
 
 /// Subtracts a constant from the velocities if they then agree with the steps much better than in any unit; returns it and the new fit.
@@ -183,7 +182,7 @@ fn parts(episode: &Episode) -> Vec<Part> {
 
 /// The kind of velocities that were computed from positions: each the step after it, or the step before it or the mean of
 /// both.
-fn made_of_positions(episodes: &[Episode]) -> Option<Agreement> {
+fn made_of_positions(episodes: &[Episode]) -> Option<VelocityOrigin> {
     let off = |of: &dyn Fn(&Episode, usize) -> DVector<f64>| {
         let (mut left, mut power) = (0.0, 0.0);
         for episode in episodes {
@@ -201,9 +200,9 @@ fn made_of_positions(episodes: &[Episode]) -> Option<Agreement> {
         (episode.step(i) + episode.step(i - 1)) / (episode.times.seconds(i, i + 1) + episode.times.seconds(i - 1, i))
     };
     if off(&after) {
-        return Some(Agreement::Steps);
+        return Some(VelocityOrigin::Steps);
     }
-    (off(&before) || off(&both)).then_some(Agreement::Differences)
+    (off(&before) || off(&both)).then_some(VelocityOrigin::Differences)
 }
 
 /// Converts stamps of milliseconds or microseconds to seconds, reports it and returns true, if that makes all velocities agree with

@@ -8,7 +8,7 @@ use smoothing::{PositionNoise, VelocityNoise};
 use crate::VelocitySource;
 use crate::notes::Notes;
 use crate::numbers::percent_of_all;
-use crate::repairs::agreement::Agreement;
+use crate::repairs::velocity_origin::VelocityOrigin;
 
 /// Positions count as exact if noise is less than this share of the squared steps.
 const EXACT: f64 = 0.01;
@@ -134,11 +134,11 @@ pub(crate) fn steps_variance(demonstrations: &Demonstrations, noise: &Noise) -> 
 }
 
 /// The source of velocities if the user requested smoothing.
-pub(crate) fn as_requested(demonstrations: &Demonstrations, agreement: Agreement) -> VelocitySource {
-    if matches!(agreement, Agreement::None | Agreement::Differences) {
+pub(crate) fn as_requested(demonstrations: &Demonstrations, origin: VelocityOrigin) -> VelocitySource {
+    if matches!(origin, VelocityOrigin::Missing | VelocityOrigin::Differences) {
         return VelocitySource::PositionsAsRequested;
     }
-    if agreement == Agreement::Own { of_recorded(demonstrations) } else { VelocitySource::Recorded }
+    if origin == VelocityOrigin::Measured { of_recorded(demonstrations) } else { VelocitySource::Recorded }
 }
 
 /// Recorded velocities, with their noise if it is not negligible.
@@ -153,7 +153,7 @@ pub(crate) fn of_recorded(demonstrations: &Demonstrations) -> VelocitySource {
 pub(crate) fn decide(
     demonstrations: &Demonstrations,
     noise: &Noise,
-    agreement: Agreement,
+    origin: VelocityOrigin,
     notes: &mut Notes,
 ) -> VelocitySource {
     let share = noise.step_share;
@@ -163,9 +163,9 @@ pub(crate) fn decide(
         Some(_) => format!("noise makes {} of the squared steps", percent_of_all(share)),
     };
     let of_velocities = noise.velocity_share.unwrap_or(0.0);
-    let recorded = match agreement {
-        Agreement::None | Agreement::Differences => VelocitySource::Positions,
-        Agreement::Steps if share > EXACT => VelocitySource::Positions,
+    let recorded = match origin {
+        VelocityOrigin::Missing | VelocityOrigin::Differences => VelocitySource::Positions,
+        VelocityOrigin::Steps if share > EXACT => VelocitySource::Positions,
         _ if of_velocities > USELESS_VELOCITIES => VelocitySource::Positions,
         _ if share > EXACT && noise.velocities_correct_positions() => VelocitySource::Fused,
         _ => of_recorded(demonstrations),
@@ -177,7 +177,7 @@ pub(crate) fn decide(
             "velocities as recorded, with their noise",
             format!("noise share of their squares: {}", percent_of_all(of_velocities)),
         ),
-        VelocitySource::Positions if agreement == Agreement::None => ("positions smoothed piecewise", words),
+        VelocitySource::Positions if origin == VelocityOrigin::Missing => ("positions smoothed piecewise", words),
         VelocitySource::Positions | VelocitySource::PositionsAsRequested => {
             ("positions smoothed piecewise", format!("{words}; velocities are no better"))
         }

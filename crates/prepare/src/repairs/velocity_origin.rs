@@ -1,12 +1,12 @@
-/// The kind of recorded velocities.
+/// Where recorded velocities come from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Agreement {
+pub(crate) enum VelocityOrigin {
     /// Missing or unusable.
-    None,
+    Missing,
     /// The step after each position, without additional information; exact if a movement was computed by such steps.
     Steps,
     /// Other differences of the positions, which contain less information than these.
     Differences,
-    /// Measured independently, and consistent with the steps.
-    Own,
+    /// Independent of the positions, and consistent with the steps.
+    Measured,
 }
