@@ -7,7 +7,7 @@ use prepare::Prepared;
 use super::friction::friction;
 use super::goals::differing_goals;
 use super::numbers::TrustNumbers;
-use super::starts::slow_starts;
+use super::slow_starts::slow_starts;
 use super::unexplained::unexplained;
 use crate::Finding;
 use crate::along::along_movements;
