@@ -6,7 +6,7 @@ use thiserror::Error;
 pub enum ConstraintError {
     /// An entry of A is NaN or infinite.
     #[error(
-        "constraint matrix, row {row}, column {column}: {value} is not a finite number; mend what computes A(x, t)"
+        "constraint matrix, row {row}, column {column}: {value} is not a finite number; fix the computation of A(x, t)"
     )]
     NotFinite {
         /// Row of the entry: index of the constraint.
@@ -25,7 +25,7 @@ pub enum ConstraintError {
         expected: usize,
     },
     /// A coordinate of the state is NaN or infinite.
-    #[error("coordinate {coordinate} of the state is {value}, not a finite number; mend what computes the state")]
+    #[error("coordinate {coordinate} of the state is {value}, not a finite number; fix the computation of the state")]
     StateNotFinite {
         /// The first faulty coordinate.
         coordinate: usize,

@@ -48,7 +48,9 @@ pub enum MetricsError {
         learnt: (usize, usize),
     },
     /// A value is NaN or infinite.
-    #[error("{series}, sample {sample}, dimension {dimension}: {value} is not a finite number; mend what computed it")]
+    #[error(
+        "{series}, sample {sample}, dimension {dimension}: {value} is not a finite number; fix the computation of it"
+    )]
     NotFinite {
         /// Its input.
         series: Series,
@@ -73,6 +75,6 @@ pub enum MetricsError {
         deviation: f64,
     },
     /// All values are finite, but the result overflows.
-    #[error("the result is larger than the largest number; the values given differ beyond all measure")]
+    #[error("the result overflows; check the units of truth and estimate")]
     Overflow,
 }

@@ -148,14 +148,14 @@ pub enum Subject {
     AtOnce,
     /// Equations of a Gaussian process.
     Rows,
-    /// What is learnt: an aligned policy, or which Gaussian process.
+    /// The learner: PolicyAlign, slope GP or direct GP.
     Learner,
     /// Lengths in the space of a robot's joints.
     Metric,
     /// Coordinates in which constraints are constant.
     #[serde(rename = "task space")]
     TaskSpace,
-    /// The rule that integrates a policy.
+    /// How the potential along a movement is integrated.
     Integration,
     /// How near two movements must pass to be aligned.
     Bandwidth,
@@ -197,6 +197,6 @@ impl fmt::Display for Subject {
 pub struct LeftOut {
     /// Its name.
     pub episode: String,
-    /// The reason, for instance "not connected".
+    /// The reason, for instance "never moves".
     pub why: String,
 }

@@ -31,7 +31,7 @@
 //! # Ok::<(), prepare::PrepareError>(())
 //! ```
 //!
-//! No other crate judges recordings: readers pass on their results unjudged, learners take the prepared data. [`Prepared`] holds the
+//! Readers report faults of files, `prepare` examines recordings, `policy_align` examines what needs a policy. [`Prepared`] holds the
 //! demonstrations, every [`Decision`](motion::Decision) with the flag that overrides it, every [`Finding`](motion::Finding), those of the
 //! reader first, and every episode that was [left out](motion::LeftOut). The guide is `docs/your-own-data.md`; `docs/decisions/trust.md`
 //! gives the reasons.

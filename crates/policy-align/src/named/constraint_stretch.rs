@@ -57,9 +57,9 @@ impl ConstraintStretch {
     pub fn in_words(&self, state: &[StateChannel]) -> String {
         match self.acting {
             Acting::Constraint => self.constraint_in_words(state),
-            Acting::Changing => "a constraint without one normal: it bends or changes".to_owned(),
+            Acting::Changing => "a constraint whose normal changes during the stretch".to_owned(),
             Acting::Nothing => "no constraint seen".to_owned(),
-            Acting::Unseen => "not seen: the policy does not want to move".to_owned(),
+            Acting::Unseen => "not observable: the policy's action is nearly 0 here".to_owned(),
         }
     }
 

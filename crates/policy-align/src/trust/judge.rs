@@ -22,7 +22,7 @@ const UNKNOWN: f64 = 0.1;
 /// Input of a verdict.
 pub(crate) struct VerdictInput<'a> {
     pub(crate) numbers: TrustNumbers,
-    /// Findings of `prepare`.
+    /// All findings so far: of readers, of `prepare` and on the policy's residuals.
     pub(crate) findings: &'a [Finding],
     pub(crate) state: &'a [StateChannel],
     /// Names of the movements in the training data.
@@ -143,10 +143,9 @@ fn about_error(numbers: &TrustNumbers, findings: &mut Vec<Finding>) {
     if let Some(halves) = numbers.halves.filter(|&halves| halves > TrustNumbers::GOOD_HALVES) {
         let (verdict, next) = match numbers.good_halves() {
             Some(_) => (Verdict::Doubtful, "record more movements, from other starts, or reduce noise"),
-            None => (
-                Verdict::Good,
-                "half of the movements would be too few; all together suffice, as the expected error is small",
-            ),
+            None => {
+                (Verdict::Good, "half of the movements do not suffice, all of them do: the expected error is small")
+            }
         };
         findings.push(Finding::new(
             verdict,

@@ -1,18 +1,20 @@
 //! Findings on constraints that push.
 
+use prepare::numbers::percent;
+
 use crate::{Finding, Topic, Verdict};
 
-/// Pushes below this share of the policy's speed are negligible. If movements are only predictable with such pushes, they differ in
-/// something else.
+/// Pushes below this share of the policy's speed are negligible. If movements are only predictable with such pushes, these do not explain
+/// how they differ.
 const PUSHES: f64 = 0.01;
 
 /// Adds a finding on pushes of a share `push` of the policy's speed. It is a remark if the policy was learnt in spite of them, which also
 /// resolves the finding on a press; otherwise it is a doubt.
 pub(crate) fn pushed(push: f64, learnt: bool, findings: &mut Vec<Finding>) {
-    let what = format!("constraints pushed, on average with {:.0} % of the policy's speed", 100.0 * push);
+    let what = format!("constraints pushed, on average with {} of the policy's speed", percent(push));
     let finding = match learnt {
         true if push < PUSHES => Finding::doubt(
-            "movements are predicted only with pushes too small to matter: they differ by something else",
+            "movements are predicted only with pushes too small to matter: pushes do not explain how movements differ",
             "if that is a goal, an object or a load, record it and name its columns with --context",
         ),
         true => {
