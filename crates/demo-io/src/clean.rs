@@ -141,12 +141,13 @@ fn leave_out_moving_environment(recordings: &mut RawRecordings, channels: &[Stri
 /// Refuses a channel that is named like a context and changes within an episode, if velocities are recorded and its are all 0.
 fn refuse_moving_context(recordings: &RawRecordings) -> Result<(), ReadError> {
     let n = recordings.channels.len();
-    let of = |numbers: &[f64], channel: usize| numbers.iter().skip(channel).step_by(n).copied().collect::<Vec<_>>();
+    let values_of =
+        |numbers: &[f64], channel: usize| numbers.iter().skip(channel).step_by(n).copied().collect::<Vec<_>>();
     for (channel, described) in recordings.channels.iter().enumerate().filter(|(_, of)| is_called_context(&of.name)) {
         let without = |raw: &RawEpisode| {
-            !raw.velocities.is_empty() && of(&raw.velocities, channel).iter().all(|&velocity| velocity == 0.0)
+            !raw.velocities.is_empty() && values_of(&raw.velocities, channel).iter().all(|&velocity| velocity == 0.0)
         };
-        let moves = |raw: &&RawEpisode| of(&raw.positions, channel).windows(2).any(|pair| pair[0] != pair[1]);
+        let moves = |raw: &&RawEpisode| values_of(&raw.positions, channel).windows(2).any(|pair| pair[0] != pair[1]);
         let Some(moving) = recordings.episodes.iter().find(moves) else { continue };
         if recordings.episodes.iter().all(without) {
             let what = format!("'{}' changes within an episode and has no velocity", described.name);

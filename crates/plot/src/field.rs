@@ -68,16 +68,16 @@ mod tests {
 
     #[test]
     fn invalid_grids_are_refused() {
-        let of = |columns: usize, rows: &[usize], places: usize| {
+        let checked = |columns: usize, rows: &[usize], places: usize| {
             let values = rows.iter().map(|&row| vec![0.0; row]).collect();
             Field::new(vec![0.0; columns], vec![0.0; places], values).map(|_| ())
         };
         let cases = [
-            (of(3, &[3, 3], 2), Ok(())),
-            (of(1, &[1, 1], 2), Err(PlotError::FieldPlaces { axis: "x", places: 1 })),
-            (of(2, &[2], 1), Err(PlotError::FieldPlaces { axis: "y", places: 1 })),
-            (of(2, &[2, 2], 3), Err(PlotError::FieldRows { found: 2, expected: 3 })),
-            (of(2, &[2, 3], 2), Err(PlotError::FieldRow { row: 1, found: 3, expected: 2 })),
+            (checked(3, &[3, 3], 2), Ok(())),
+            (checked(1, &[1, 1], 2), Err(PlotError::FieldPlaces { axis: "x", places: 1 })),
+            (checked(2, &[2], 1), Err(PlotError::FieldPlaces { axis: "y", places: 1 })),
+            (checked(2, &[2, 2], 3), Err(PlotError::FieldRows { found: 2, expected: 3 })),
+            (checked(2, &[2, 3], 2), Err(PlotError::FieldRow { row: 1, found: 3, expected: 2 })),
         ];
         for (found, expected) in cases {
             assert_eq!(found, expected);

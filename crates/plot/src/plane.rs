@@ -141,11 +141,11 @@ impl Plane {
 
     /// The labels on contours of all layers.
     fn values(&self) -> Vec<Written> {
-        let of = |layer: &Layer| match layer {
+        let values_of = |layer: &Layer| match layer {
             Layer::Levels { field, known, .. } => levels::written(field, known),
             _ => vec![],
         };
-        self.layers.iter().flat_map(of).collect()
+        self.layers.iter().flat_map(values_of).collect()
     }
 }
 

@@ -126,11 +126,11 @@ impl Recordings {
     /// Labels of the movements' constraints, one per sample.
     #[getter]
     fn constraints(&self) -> Vec<Option<Vec<String>>> {
-        let of = |episode: &Episode| {
+        let labels_of = |episode: &Episode| {
             let labels = episode.constraint.as_ref()?;
             Some((0..episode.n_samples()).map(|sample| labels.at(sample).to_owned()).collect())
         };
-        self.inner.recordings.episodes.iter().map(of).collect()
+        self.inner.recordings.episodes.iter().map(labels_of).collect()
     }
 
     /// Names and units of the state's dimensions.
@@ -211,14 +211,14 @@ pub(crate) fn names_of(recordings: &motion::Recordings) -> Vec<String> {
 fn check(recordings: &motion::Recordings, dt: Option<f64>) -> Result<(), PrepareError> {
     let dim = recordings.state.len();
     for (k, episode) in recordings.episodes.iter().enumerate() {
-        let of = |source| PrepareError::Episode { episode: episode.name.clone(), source };
+        let refused = |source| PrepareError::Episode { episode: episode.name.clone(), source };
         let found = episode.positions.nrows();
         if found != dim {
-            return Err(of(MotionError::Dimensions { trajectory: k, found, expected: dim }));
+            return Err(refused(MotionError::Dimensions { trajectory: k, found, expected: dim }));
         }
-        let movement = movement(episode, dt).map_err(of)?;
+        let movement = movement(episode, dt).map_err(refused)?;
         if let Some(velocities) = &episode.velocities {
-            movement.with_velocities(DMatrix::clone(velocities)).map_err(of)?;
+            movement.with_velocities(DMatrix::clone(velocities)).map_err(refused)?;
         }
     }
     Ok(())

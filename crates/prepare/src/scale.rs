@@ -38,11 +38,11 @@ pub(crate) fn channels(
     scales: &DVector<f64>,
     values: impl Fn(usize) -> Vec<f64>,
 ) -> Vec<StateChannel> {
-    let of = |(at, channel): (usize, &Channel)| {
+    let described = |(at, channel): (usize, &Channel)| {
         let values: Vec<f64> = values(at).into_iter().map(|x| x / scales[at]).collect();
         let (low, high) = range(values.iter().copied());
         let median = upper_median(values).expect("demonstrations have samples");
         StateChannel { name: channel.name.clone(), unit: channel.unit.clone(), scale: scales[at], low, high, median }
     };
-    channels.iter().enumerate().map(of).collect()
+    channels.iter().enumerate().map(described).collect()
 }

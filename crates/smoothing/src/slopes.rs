@@ -144,9 +144,9 @@ mod tests {
         ) {
             let times = times(&steps);
             let degree = times.len().min(points) - 1;
-            let of = |t: f64| (0..=degree).map(|k| coefficients[k] * t.powf(k as f64)).sum::<f64>();
+            let value = |t: f64| (0..=degree).map(|k| coefficients[k] * t.powf(k as f64)).sum::<f64>();
             let slope = |t: f64| (1..=degree).map(|k| k as f64 * coefficients[k] * t.powf(k as f64 - 1.0)).sum::<f64>();
-            let states = DMatrix::from_fn(2, times.len(), |axis, i| of(times[i]) * (axis as f64 + 1.0));
+            let states = DMatrix::from_fn(2, times.len(), |axis, i| value(times[i]) * (axis as f64 + 1.0));
             let movement = Trajectory::new(states, 1.0).and_then(|of| of.with_times(times.clone())).expect("a movement");
             let found = if switches { slopes_between_switches(&movement, points) } else { slopes(&movement, points) };
             for (sample, found) in found.column_iter().enumerate() {

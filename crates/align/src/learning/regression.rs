@@ -10,10 +10,10 @@ const IDLE: f64 = 1e-3;
 /// The largest activation of a receptive field at a state, (n), for the output where it is smallest; 0 if for some
 /// output no field takes part in the prediction.
 pub(crate) fn support(model: &StandardisedModel, state: DVectorView<'_, f64>) -> f64 {
-    let of = |output| {
+    let support_of = |output| {
         if model.supports(state, output) { model.predictor().max_activation(state, output) } else { 0.0 }
     };
-    (0..model.n_out()).map(of).fold(f64::INFINITY, f64::min)
+    (0..model.n_out()).map(support_of).fold(f64::INFINITY, f64::min)
 }
 
 /// One length for all dimensions: the root mean square of the states' standard deviations, without idle dimensions; 1 if

@@ -179,12 +179,12 @@ mod tests {
             let (x, y) = (states.column(i), to.column(m));
             x.iter().zip(y.iter()).map(|(x, y)| (x - y) * (x - y)).sum()
         };
-        let of = |m: usize| {
+        let nearest_to = |m: usize| {
             let all: Vec<f64> = (0..states.ncols()).map(|i| distance(i, m)).collect();
             let least = all.iter().copied().fold(f64::INFINITY, f64::min);
             (least, all.iter().position(|&d| d == least).unwrap() as f64)
         };
-        (0..to.ncols()).map(of).collect()
+        (0..to.ncols()).map(nearest_to).collect()
     }
 
     fn found(minima: &Minima, count: usize) -> Vec<(f64, f64)> {

@@ -120,8 +120,8 @@ mod tests {
         #[test]
         fn single_samples_are_as_far_apart_as_their_boxes(x in vec(-1.0..1.0, 5), y in vec(-1.0..1.0, 5)) {
             let squared = x.iter().zip(&y).fold(0.0, |sum, (x, y)| sum + (x - y) * (x - y));
-            let of = |x| Boxes::new(&DMatrix::from_vec(5, 1, x));
-            prop_assert_eq!(of(x).squared_gap(0, &of(y), 0), squared);
+            let boxes_of = |x| Boxes::new(&DMatrix::from_vec(5, 1, x));
+            prop_assert_eq!(boxes_of(x).squared_gap(0, &boxes_of(y), 0), squared);
         }
     }
 }

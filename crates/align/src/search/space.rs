@@ -84,11 +84,11 @@ impl SearchSpace {
 
     /// For each trajectory i, those of i, i + 1, … whose boxes are within the search radius of its own, ascending.
     fn neighbours(&self, squared_radius: f64) -> Vec<Vec<usize>> {
-        let of = |i: usize| -> Vec<usize> {
+        let neighbours_of = |i: usize| -> Vec<usize> {
             let own = &self.trajectories[i].boxes;
             let within = |&j: &usize| own.is_within(squared_radius, &self.trajectories[j].boxes);
             (i..self.n_trajectories()).filter(within).collect()
         };
-        (0..self.n_trajectories()).into_par_iter().map(of).collect()
+        (0..self.n_trajectories()).into_par_iter().map(neighbours_of).collect()
     }
 }

@@ -196,14 +196,14 @@ impl Fields {
             (0..names.len())
                 .find(|&index| !ignored[index] && !self.uses(index) && names[index].eq_ignore_ascii_case(name))
         };
-        let of = |&state: &usize| {
+        let velocity_of = |&state: &usize| {
             let state = names[state].to_lowercase();
             let alone = self.state.len() == 1;
             velocity_names(&state).find_map(|name| free(&name)).or_else(|| {
                 VELOCITIES.iter().filter(|_| alone && STATES.contains(&&state[..])).find_map(|name| free(name))
             })
         };
-        self.state.iter().map(of).collect::<Option<Vec<_>>>().unwrap_or_default()
+        self.state.iter().map(velocity_of).collect::<Option<Vec<_>>>().unwrap_or_default()
     }
 }
 

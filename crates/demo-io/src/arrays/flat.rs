@@ -51,11 +51,11 @@ impl Columns<'_> {
         let times = match (&step, stamps) {
             (None, Some((stamps, name))) => {
                 let mut unit = None;
-                let of = |samples: &Samples| {
+                let seconds_of = |samples: &Samples| {
                     let stamps = samples.rows.iter().map(|&row| (Stamp::number(stamps[row]), None));
                     seconds_since_first(stamps, &name, input.options.time_unit, &mut unit)
                 };
-                ranges.iter().map(of).collect()
+                ranges.iter().map(seconds_of).collect()
             }
             _ => self.times(&state, step, &ranges, load)?,
         };

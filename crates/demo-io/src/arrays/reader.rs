@@ -110,7 +110,7 @@ impl ArrayReader<'_> {
             let first = ranges.last().map_or(0, |(_, range)| range.end);
             ranges.push((field, first..first + n));
         }
-        let of = |parts: &[Part]| -> Vec<String> {
+        let names_asked = |parts: &[Part]| -> Vec<String> {
             let names_of = |part: &Part| match part {
                 Part::Columns(pattern) => vec![pattern.clone()],
                 Part::Array(index) => {
@@ -121,9 +121,9 @@ impl ArrayReader<'_> {
             parts.iter().flat_map(names_of).collect()
         };
         Ok(Asked {
-            state: of(state),
-            velocity: of(velocity),
-            context: of(context),
+            state: names_asked(state),
+            velocity: names_asked(velocity),
+            context: names_asked(context),
             time: time.clone(),
             ignore: ignore.clone(),
         })

@@ -34,14 +34,14 @@ pub(crate) struct Within {
 
 impl Within {
     pub(crate) fn of(options: &ReadOptions, described: &[ArraySpec]) -> Self {
-        let of = |patterns: &[String]| parts(patterns, described);
-        let time = of(options.time.as_slice());
+        let parts_of = |patterns: &[String]| parts(patterns, described);
+        let time = parts_of(options.time.as_slice());
         let mut within = Within {
-            state: of(&options.state),
-            velocity: of(&options.velocity),
-            context: of(&options.context),
+            state: parts_of(&options.state),
+            velocity: parts_of(&options.velocity),
+            context: parts_of(&options.context),
             time: time.first().and_then(Part::columns).map(str::to_owned),
-            ignore: of(&options.ignore).iter().filter_map(Part::columns).map(str::to_owned).collect(),
+            ignore: parts_of(&options.ignore).iter().filter_map(Part::columns).map(str::to_owned).collect(),
         };
         let whole = |parts: &[Part]| parts.iter().all(|part| part.columns().is_none());
         if whole(&within.velocity) {
@@ -80,12 +80,12 @@ impl Within {
     /// Arrays other than the state in which something is selected.
     pub(crate) fn beside(&self, state: &[usize], described: &[ArraySpec]) -> Vec<usize> {
         let mut beside: Vec<usize> = Vec::new();
-        let of = |part: &Part| match part {
+        let array_of = |part: &Part| match part {
             Part::Array(index) => Some(*index),
             Part::Columns(pattern) => owner(pattern, described),
         };
         let time = self.time.as_ref().and_then(|pattern| owner(pattern, described));
-        for index in self.velocity.iter().chain(&self.context).filter_map(of).chain(time) {
+        for index in self.velocity.iter().chain(&self.context).filter_map(array_of).chain(time) {
             if !state.contains(&index) && !beside.contains(&index) {
                 beside.push(index);
             }

@@ -94,11 +94,11 @@ impl Chosen {
             return Err(ReadError::NoRoles(Fault::new(what, place, remedy)));
         }
         let still = self.context.len();
-        let of = |sample: usize| {
+        let sample_values = |sample: usize| {
             let own = columns.iter().map(move |&column| from[sample * width + column]);
             own.chain(std::iter::repeat_n(0.0, still))
         };
-        Ok((0..samples).flat_map(of).collect())
+        Ok((0..samples).flat_map(sample_values).collect())
     }
 
     /// The stamps of each sample, if a column holds them.

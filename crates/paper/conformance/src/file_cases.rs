@@ -131,7 +131,7 @@ fn says(words: &[String], text: &str) -> anyhow::Result<()> {
 impl Expect {
     fn check(&self, recordings: &Recordings) -> anyhow::Result<()> {
         let Recordings { state, episodes, .. } = recordings;
-        let of = |value: fn(&Episode) -> String| episodes.iter().map(value).collect::<Vec<_>>();
+        let of_each = |value: fn(&Episode) -> String| episodes.iter().map(value).collect::<Vec<_>>();
         same("episodes", self.episodes.as_ref(), &episodes.len())?;
         same("samples", self.samples.as_ref(), &episodes.iter().map(|episode| episode.times.len()).collect())?;
         same("states", self.states.as_ref(), &state.len())?;
@@ -141,10 +141,10 @@ impl Expect {
             self.units.as_ref(),
             &state.iter().map(|channel| channel.unit.clone().unwrap_or_default()).collect(),
         )?;
-        same("episode names", self.episode_names.as_ref(), &of(|episode| episode.name.clone()))?;
+        same("episode names", self.episode_names.as_ref(), &of_each(|episode| episode.name.clone()))?;
         let constraint =
             |episode: &Episode| episode.constraint.as_ref().and_then(|of| of.only()).unwrap_or_default().to_owned();
-        same("constraints", self.constraints.as_ref(), &of(constraint))?;
+        same("constraints", self.constraints.as_ref(), &of_each(constraint))?;
         if let Some(expected) = self.dt {
             let found = recordings.time_step();
             ensure!((found / expected - 1.0).abs() < 1e-9, "dt is {found} instead of {expected}");

@@ -120,8 +120,8 @@ impl Experiment {
 
     /// Why a cell stands out and what was tried, if known: the text for its row, or else the text for every row.
     pub fn explain(&self, row: &str, measure: Measure) -> Option<&str> {
-        let of = |row: &str| self.explanations.texts.get(row)?.get(&measure);
-        of(row).or_else(|| of(EVERY_ROW)).map(String::as_str)
+        let explanation_of = |row: &str| self.explanations.texts.get(row)?.get(&measure);
+        explanation_of(row).or_else(|| explanation_of(EVERY_ROW)).map(String::as_str)
     }
 }
 

@@ -42,19 +42,19 @@ mod tests {
     #[test]
     fn parameters_name_data_alignment_and_learners() {
         let experiments = registry().unwrap();
-        let of = |id: &str| {
+        let parameters_of = |id: &str| {
             let experiment = experiments.iter().find(|experiment| experiment.id == id).unwrap();
             experiment.setups[0].trial.parameters().unwrap()
         };
-        let toy = of("table1");
+        let toy = parameters_of("table1");
         assert_eq!(toy["system"]["n_trajectories"], 40);
         assert_eq!((&toy["system"]["start_range"], &toy["system"]["time_step"]), (&2.0.into(), &1.0.into()));
         let regression = &toy["protocol"]["pupils"][0]["PolicyAlign"];
         assert_eq!((&regression["passes"], &toy["protocol"]["held_out"]), (&2.into(), &0.2.into()));
-        let arm = of("three_link");
+        let arm = parameters_of("three_link");
         assert_eq!(arm["arm"]["roll_out"]["time_step"], 0.5);
         assert_eq!(arm["protocol"]["pupils"][1]["Other"]["parameters"]["params"]["init_d"], 25.0);
-        assert_eq!(of("table2")["grasp"]["gap_least"], 0.17);
-        assert_eq!(of("asimo22")["scenario"]["start_variance"], 0.1);
+        assert_eq!(parameters_of("table2")["grasp"]["gap_least"], 0.17);
+        assert_eq!(parameters_of("asimo22")["scenario"]["start_variance"], 0.1);
     }
 }

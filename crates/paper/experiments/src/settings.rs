@@ -7,8 +7,8 @@ use crate::tables::{asimo22, table1, table2, three_link};
 
 /// Number of fitted values; one that several experiments share counts once.
 pub fn n_fitted() -> usize {
-    let of = |setting: Setting| (setting.class == Class::Fitted).then(|| (setting.name, setting.shown()));
-    settings().into_iter().filter_map(of).collect::<BTreeSet<_>>().len()
+    let fitted = |setting: Setting| (setting.class == Class::Fitted).then(|| (setting.name, setting.shown()));
+    settings().into_iter().filter_map(fitted).collect::<BTreeSet<_>>().len()
 }
 
 /// All settings, by experiment.

@@ -53,8 +53,8 @@ pub fn staged(playback: &Value) -> Option<Staged> {
 fn stopped(data: &GraspPlayback, starts: &[usize]) -> Vec<usize> {
     const STOPPED: f64 = 0.1;
     let is_stopped = |start: &usize| {
-        let of = |m: &&Movement| m.constraint == "obstacle" && m.learner == "expert" && m.start == *start;
-        let end = data.movements.iter().find(of).and_then(|movement| movement.palms.last());
+        let is_shown = |m: &&Movement| m.constraint == "obstacle" && m.learner == "expert" && m.start == *start;
+        let end = data.movements.iter().find(is_shown).and_then(|movement| movement.palms.last());
         let away = |palm: (&[f64], &[f64])| palm.0.iter().zip(palm.1).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt();
         end.is_some_and(|end| end.chunks(3).zip(data.scene.target.chunks(3)).any(|palm| away(palm) > STOPPED))
     };

@@ -64,8 +64,8 @@ pub fn on_new_movements(experiments: &[Experiment], results: &[ExperimentResult]
         let comparisons = Comparisons::of(experiment, results.iter().find(|result| result.id == id)?)?;
         let line =
             comparisons.lines.iter().find(|line| line.comparison.case == case && line.comparison.measure == measure)?;
-        let of = |method| line.mean(method).map(shown_mean);
-        Some([of(Method::Naive)?, of(Method::PolicyAlign)?, of(Method::SlopeGp)?])
+        let mean_of = |method| line.mean(method).map(shown_mean);
+        Some([mean_of(Method::Naive)?, mean_of(Method::PolicyAlign)?, mean_of(Method::SlopeGp)?])
     };
     let fresh = errors("table1", "sinusoidal-100x100-medium", Measure::NupeFresh).map(|[naive, align, slope]| {
         format!(

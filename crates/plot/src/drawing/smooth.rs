@@ -75,9 +75,9 @@ mod tests {
 
     #[test]
     fn level_fields_have_the_middle_colour_and_unknown_none() {
-        let of = |value| Field::new(vec![0.0, 1.0], vec![0.0, 1.0], vec![vec![value; 2]; 2]).unwrap();
+        let level_field = |value| Field::new(vec![0.0, 1.0], vec![0.0, 1.0], vec![vec![value; 2]; 2]).unwrap();
         let [r, g, b] = height(0.5);
-        assert!(dots(&of(3.0), [3.0, 3.0]).iter().all(|dot| *dot == [r, g, b, 255]));
-        assert!(dots(&of(f64::NAN), [0.0, 1.0]).iter().all(|dot| dot[3] == 0));
+        assert!(dots(&level_field(3.0), [3.0, 3.0]).iter().all(|dot| *dot == [r, g, b, 255]));
+        assert!(dots(&level_field(f64::NAN), [0.0, 1.0]).iter().all(|dot| dot[3] == 0));
     }
 }

@@ -81,7 +81,7 @@ pub(crate) fn flag_words(flags: &impl Serialize) -> String {
         Value::Boolean(_) => format!(" --{flag}"),
         value => format!(" --{flag} {}", value_word(&text(value))),
     };
-    let of = |(key, value): (String, Value)| {
+    let words = |(key, value): (String, Value)| {
         let flag = key.replace('_', "-");
         match value {
             Value::Array(values) => values.iter().map(|value| one(&flag, value)).collect(),
@@ -89,7 +89,7 @@ pub(crate) fn flag_words(flags: &impl Serialize) -> String {
         }
     };
     // Values that no table can hold were refused earlier.
-    given(flags).map_or_else(|_| String::new(), |table| table.into_iter().map(of).collect())
+    given(flags).map_or_else(|_| String::new(), |table| table.into_iter().map(words).collect())
 }
 
 #[cfg(test)]

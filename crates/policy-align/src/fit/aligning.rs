@@ -173,8 +173,8 @@ fn grid(
     let results: Vec<_> = jobs.par_iter().map(fold_errors).collect();
     for ((sigma_squared, _), errors) in jobs.iter().zip(results) {
         for (init_d, error) in sizes.iter().zip(errors?) {
-            let of = |tried: &&mut Tried| tried.sigma_squared == *sigma_squared && tried.init_d == *init_d;
-            tried.iter_mut().filter(of).for_each(|tried| tried.folds.push(error));
+            let has_settings = |tried: &&mut Tried| tried.sigma_squared == *sigma_squared && tried.init_d == *init_d;
+            tried.iter_mut().filter(has_settings).for_each(|tried| tried.folds.push(error));
         }
     }
     Ok(tried)

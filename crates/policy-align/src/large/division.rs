@@ -152,10 +152,10 @@ mod tests {
             for (path, &size) in files.iter().zip(&sizes) {
                 fs::write(path, vec![b'0'; size]).expect("a file");
             }
-            let of = |files: &[PathBuf]| {
+            let divided = |files: &[PathBuf]| {
                 Division::of(files, &ReadOptions::default(), most, &mut |_| ()).expect("a division")
             };
-            let division = of(&files);
+            let division = divided(&files);
             let further = || division.further.iter();
             let found: BTreeSet<&PathBuf> =
                 division.at_once.iter().chain(further().map(|further| &further.piece)).map(|piece| &piece.path).collect();
@@ -171,7 +171,7 @@ mod tests {
             shared.sort_by_key(|file| file.at);
             prop_assert_eq!(&shared, &division.further);
             // A folder is equivalent to its files.
-            let of_folder = of(&[folder.path().to_owned()]);
+            let of_folder = divided(&[folder.path().to_owned()]);
             if !of_folder.further.is_empty() {
                 prop_assert_eq!(of_folder.at_once.len() + of_folder.further.len(), files.len());
             }

@@ -17,11 +17,11 @@ impl JointLimits {
     /// A sentence that describes a fault of the text, or says that no channel is a joint.
     pub fn from_urdf(text: &str, channels: &[String]) -> Result<Self, String> {
         let robot = RobotModel::from_urdf(text).map_err(|error| error.to_string())?;
-        let of = |(at, name): (usize, &String)| {
+        let limit_of = |(at, name): (usize, &String)| {
             let joint = &robot.joints()[joint_of(&robot, name)?];
             Some((at, name.clone(), joint.lower(), joint.upper()))
         };
-        let limits: Vec<_> = channels.iter().enumerate().filter_map(of).collect();
+        let limits: Vec<_> = channels.iter().enumerate().filter_map(limit_of).collect();
         if limits.is_empty() {
             let joints: Vec<_> = robot.joints().iter().map(kinematics::Joint::name).collect();
             return Err(format!("no channel of the state is a joint of this robot, which has {}", joints.join(", ")));

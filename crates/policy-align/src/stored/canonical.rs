@@ -73,11 +73,11 @@ mod tests {
 
     #[test]
     fn checksum_ignores_only_order_and_whitespace() {
-        let of = |text: &str| checksum(&serde_json::from_str(text).unwrap());
-        let one = of(r#"{"a": [1.5, null], "b": "é"}"#);
-        assert_eq!(one, of("{\"b\":\"\\u00e9\",\n\"a\":[1.5,null]}"));
+        let checksum_of = |text: &str| checksum(&serde_json::from_str(text).unwrap());
+        let one = checksum_of(r#"{"a": [1.5, null], "b": "é"}"#);
+        assert_eq!(one, checksum_of("{\"b\":\"\\u00e9\",\n\"a\":[1.5,null]}"));
         for other in [r#"{"a":[1.5],"b":"é"}"#, r#"{"a":[1.25,null],"b":"é"}"#, r#"{"a":[1.5,null],"c":"é"}"#] {
-            assert_ne!(one, of(other));
+            assert_ne!(one, checksum_of(other));
         }
         assert_eq!(sha256(b"abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
         let (path, bytes) = (tempfile::NamedTempFile::new().unwrap().into_temp_path(), vec![7; 200_001]);

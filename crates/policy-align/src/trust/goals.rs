@@ -63,8 +63,8 @@ fn own_share(movements: &[Vec<MotionSample>]) -> Option<f64> {
 /// The first and third quarter of the rows, and the others.
 fn quarters(rows: &[Row]) -> (Vec<Row>, Vec<Row>) {
     let quarter = rows.len().div_ceil(4).max(1);
-    let of = |part: usize| rows.chunks(quarter).skip(part).step_by(2).flatten().cloned().collect();
-    (of(0), of(1))
+    let every_other_from = |part: usize| rows.chunks(quarter).skip(part).step_by(2).flatten().cloned().collect();
+    (every_other_from(0), every_other_from(1))
 }
 
 /// Σ(e − nᵀc)² over the rows, with the ridge estimate c from `others`.

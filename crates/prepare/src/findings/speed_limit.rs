@@ -81,14 +81,14 @@ impl Speeds {
     }
 
     fn limit(&self, state: &[StateChannel]) -> Option<Finding> {
-        let of =
+        let speeds_by =
             |of: &dyn Fn(DVectorView<'_, f64>) -> f64| -> Vec<f64> { self.velocities.column_iter().map(of).collect() };
-        if let Some(plateau) = self.plateau(of(&|u| u.norm())) {
+        if let Some(plateau) = self.plateau(speeds_by(&|u| u.norm())) {
             return Some(plateau.finding(""));
         }
         let axes: Vec<(Plateau, &str)> = (0..state.len())
             .filter_map(|axis| {
-                let plateau = self.plateau(of(&|u| u[axis].abs()))?;
+                let plateau = self.plateau(speeds_by(&|u| u[axis].abs()))?;
                 let mean = self.velocities.row(axis).mean();
                 (mean.abs() < STEADY * plateau.speed).then(|| (plateau, state[axis].name.as_str()))
             })

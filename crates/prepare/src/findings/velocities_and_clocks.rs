@@ -31,8 +31,9 @@ pub(crate) fn velocities_and_clocks(demonstrations: &Demonstrations, channels: &
             steps = ", at another time step in each movement";
         }
     }
-    let of = |pick: &dyn Fn(&(usize, usize)) -> usize| pairs.iter().map(|pair| names[pick(pair)]).collect::<Vec<_>>();
-    let (states, rates) = (listed(&of(&|pair| pair.0)), listed(&of(&|pair| pair.1)));
+    let names_by =
+        |pick: &dyn Fn(&(usize, usize)) -> usize| pairs.iter().map(|pair| names[pick(pair)]).collect::<Vec<_>>();
+    let (states, rates) = (listed(&names_by(&|pair| pair.0)), listed(&names_by(&|pair| pair.1)));
     let (mut what, mut next) = (Vec::new(), Vec::new());
     if let Some(clock) = clock {
         what.push(format!("{} rises as time does", names[clock]));

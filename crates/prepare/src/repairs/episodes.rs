@@ -58,13 +58,13 @@ pub(crate) fn leave_out_still(episodes: &mut Vec<Episode>, notes: &mut Notes) {
 
 /// Converts and checks all episodes.
 pub(crate) fn demonstrations(episodes: Vec<Episode>) -> Result<Demonstrations, PrepareError> {
-    let of = |episode: String| |source| PrepareError::Episode { episode, source };
+    let error_of = |episode: String| |source| PrepareError::Episode { episode, source };
     let first = episodes[0].name.clone();
     let trajectory = |mut episode: Episode| {
         let name = mem::take(&mut episode.name);
-        episode.into_trajectory().map_err(of(name))
+        episode.into_trajectory().map_err(error_of(name))
     };
-    Demonstrations::new(episodes.into_iter().map(trajectory).collect::<Result<_, _>>()?).map_err(of(first))
+    Demonstrations::new(episodes.into_iter().map(trajectory).collect::<Result<_, _>>()?).map_err(error_of(first))
 }
 
 /// Applies `of` to the episodes as demonstrations. Their numbers are moved there and back, not copied.

@@ -57,11 +57,11 @@ fn means(movement: &Trajectory, taken: usize) -> Result<Trajectory, MotionError>
     if taken == 1 || count < 2 {
         return Ok(movement.clone());
     }
-    let of = |values: &DMatrix<f64>| {
+    let means_of = |values: &DMatrix<f64>| {
         let means: Vec<_> = (0..count).map(|at| values.columns(at * taken, taken).column_mean()).collect();
         DMatrix::from_columns(&means)
     };
-    let thinned = Trajectory::new(of(movement.states()), movement.time_step() * taken as f64)?
+    let thinned = Trajectory::new(means_of(movement.states()), movement.time_step() * taken as f64)?
         .with_context(movement.context().clone())?
         .with_labels(movement.labels().and_then(|labels| labels.chosen((0..count).map(|at| at * taken + taken / 2))));
     let thinned = match movement.times() {
@@ -73,6 +73,6 @@ fn means(movement: &Trajectory, taken: usize) -> Result<Trajectory, MotionError>
     };
     match movement.velocities() {
         None => Ok(thinned),
-        Some(velocities) => thinned.with_velocities(of(velocities)),
+        Some(velocities) => thinned.with_velocities(means_of(velocities)),
     }
 }

@@ -38,10 +38,11 @@ pub(super) fn nanoseconds_of(seconds: &str) -> Vec<String> {
     let name = base(seconds);
     let [secs, sec] =
         ["secs", "sec"].map(|unit| name.strip_suffix(unit).filter(|stem| !stem.ends_with(char::is_alphabetic)));
-    let of = |stem: Option<&str>, units: [&str; 3]| -> Vec<String> {
+    let with_units = |stem: Option<&str>, units: [&str; 3]| -> Vec<String> {
         stem.into_iter().flat_map(|stem| units.map(|unit| format!("{stem}{unit}"))).collect()
     };
-    [of(secs, ["nsecs", "nanosecs", "nanoseconds"]), of(sec, ["nanosec", "nsec", "nanoseconds"])].concat()
+    [with_units(secs, ["nsecs", "nanosecs", "nanoseconds"]), with_units(sec, ["nanosec", "nsec", "nanoseconds"])]
+        .concat()
 }
 
 /// The name in lower case, without a unit in brackets after a blank: `X [m]` becomes `x`, but `position[0]` stays.

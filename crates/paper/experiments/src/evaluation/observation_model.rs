@@ -57,8 +57,8 @@ fn without_velocities(recording: Recording) -> anyhow::Result<Recording> {
 
 /// Every sample of some trajectories.
 pub(crate) fn samples_of(recordings: &[Recording], trajectories: std::ops::Range<usize>) -> Vec<SampleIndex> {
-    let of = |trajectory: usize| {
+    let samples = |trajectory: usize| {
         (0..recordings[trajectory].truth.states.ncols()).map(move |sample| SampleIndex { trajectory, sample })
     };
-    trajectories.flat_map(of).collect()
+    trajectories.flat_map(samples).collect()
 }

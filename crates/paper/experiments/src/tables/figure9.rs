@@ -174,8 +174,8 @@ mod tests {
         let arm = ThreeLinkArm { n_trajectories: 40, ..arm().unwrap() };
         let recordings = arm.record(&mut crate::seed::generator(1, ARM_SYSTEM, 0)).unwrap();
         let median = |distance: Distance, sample: usize| {
-            let of = |recording: &demo_gen::Recording| distance.of(recording.truth.states.column(sample));
-            let mut distances: Vec<f64> = recordings.iter().map(of).collect();
+            let distance_of = |recording: &demo_gen::Recording| distance.of(recording.truth.states.column(sample));
+            let mut distances: Vec<f64> = recordings.iter().map(distance_of).collect();
             distances.sort_by(f64::total_cmp);
             distances[20]
         };

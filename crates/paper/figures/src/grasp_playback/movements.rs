@@ -61,8 +61,8 @@ pub(super) fn movements(grasp: &Grasp, seed: u64) -> anyhow::Result<Vec<Movement
     let policies = policies(grasp, &recordings, &mut rng)?;
     let stage = Stage { grasp, policies, starts: shown };
     let all = Constraint::ALL.into_iter().flat_map(|constraint| {
-        let of = move |learner| (0..STARTS).map(move |start| (constraint, learner, start));
-        (0..LEARNERS.len()).flat_map(of)
+        let from_all_starts = move |learner| (0..STARTS).map(move |start| (constraint, learner, start));
+        (0..LEARNERS.len()).flat_map(from_all_starts)
     });
     let all: Vec<_> = all.collect();
     let movement = |(constraint, learner, start): (Constraint, usize, usize)| {

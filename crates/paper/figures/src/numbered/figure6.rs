@@ -82,9 +82,9 @@ fn series<'a>(sources: &'a Sources, id: &str, prefix: &str, percent: &[f64]) -> 
 /// A curve for each learner other than PolicyAlign that was run.
 fn baselines(sources: &Sources, id: &str, case: &str, percent: &[f64]) -> anyhow::Result<Vec<Curve>> {
     let result = sources.experiment(id).with_context(|| format!("{id} was not run"))?;
-    let of = |learner: &str| percent.iter().map(|&x| (x, format!("{case}-{x}/{learner}"))).collect();
+    let rows_of = |learner: &str| percent.iter().map(|&x| (x, format!("{case}-{x}/{learner}"))).collect();
     let curves = BASELINES
-        .map(|(error, learner)| Series { result, rows: of(learner), of: "", style: FIRST }.curve(error))
+        .map(|(error, learner)| Series { result, rows: rows_of(learner), of: "", style: FIRST }.curve(error))
         .into_iter();
     Ok(curves.filter(|curve| !curve.points.is_empty()).collect())
 }
@@ -155,12 +155,12 @@ mod tests {
     #[test]
     fn curves_beyond_the_axis_are_noted() {
         let sources = records();
-        let of = |rule| beyond(&series(&sources, "figure6_right", &format!("{rule}-"), &NOISE_PERCENT).unwrap());
-        assert!(of(RULES[0].0).is_none());
+        let note_of = |rule| beyond(&series(&sources, "figure6_right", &format!("{rule}-"), &NOISE_PERCENT).unwrap());
+        assert!(note_of(RULES[0].0).is_none());
         let result = sources.experiment("figure6_right").unwrap();
         let largest =
             &result.rows.iter().find(|row| row.id == "displacement-narrow-20").unwrap().measures[&Measure::Nupe];
-        let note = of(RULES[1].0).unwrap();
+        let note = note_of(RULES[1].0).unwrap();
         assert!(note.text.ends_with(&format!(" to {:.0} at 20 %", largest.mean)), "{}", note.text);
     }
 }

@@ -32,7 +32,7 @@ pub(crate) fn held(found: &[ConstraintStretch], prepared: &Prepared) -> Vec<Held
     let on_channels =
         |stretch: &&ConstraintStretch| stretch.acting == Acting::Constraint && stretch.on == ConstraintOn::Channels;
     let all: Vec<&ConstraintStretch> = found.iter().filter(on_channels).collect();
-    let of = |stretch: &&ConstraintStretch| {
+    let as_held = |stretch: &&ConstraintStretch| {
         let episode = prepared.episodes.iter().position(|name| *name == stretch.episode)?;
         let movement = &prepared.demonstrations.trajectories()[episode];
         let last = movement.n_samples() - 1;
@@ -44,7 +44,7 @@ pub(crate) fn held(found: &[ConstraintStretch], prepared: &Prepared) -> Vec<Held
             moves: stretch.speeds.iter().map(|speed| *speed != 0.0).collect(),
         })
     };
-    all.iter().step_by(all.len().div_ceil(DRAWN).max(1)).filter_map(of).collect()
+    all.iter().step_by(all.len().div_ceil(DRAWN).max(1)).filter_map(as_held).collect()
 }
 
 /// The sample half way along the path between two samples. The middle sample would not do: movements that come to rest have most

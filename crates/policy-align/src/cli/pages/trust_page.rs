@@ -93,12 +93,12 @@ fn numbers(model: &Model) -> Markup {
     let worst = numbers.episode_errors.iter().map(|&(_, error)| error).max_by(f64::total_cmp);
     // For PolicyAlign, a Gaussian process is learnt as well; some numbers are of that process.
     let aligned = numbers.aligned.as_ref();
-    let of =
+    let named =
         |what: &str, learner: &str| if aligned.is_some() { format!("{what} ({learner})") } else { what.to_owned() };
     let (gp, slope) = ("of the Gaussian process", "of the slope GP");
     let of_policy = [
         (
-            of("Cross-validated error along the observed motion, relative to the policy", "of PolicyAlign"),
+            named("Cross-validated error along the observed motion, relative to the policy", "of PolicyAlign"),
             Some(numbers.held_out_error),
             Good::Below(TrustNumbers::GOOD_HELD_OUT_ERROR),
         ),
@@ -122,18 +122,18 @@ fn numbers(model: &Model) -> Markup {
             Good::Below(numbers.good_expected_error()),
         ),
         (
-            of("Difference between slope and direct policy", "both Gaussian processes"),
+            named("Difference between slope and direct policy", "both Gaussian processes"),
             Some(numbers.gap),
             Good::Words("large where constraints acted"),
         ),
-        (of("Cross-validated error of the worst episode", gp), worst, Good::Words("near that of all episodes")),
+        (named("Cross-validated error of the worst episode", gp), worst, Good::Words("near that of all episodes")),
         (
-            of("Difference between the policies learnt from either half of the episodes", gp),
+            named("Difference between the policies learnt from either half of the episodes", gp),
             numbers.halves,
             numbers.good_halves().map_or(Good::Words("any: the expected error is small"), Good::Below),
         ),
         (
-            of(
+            named(
                 "Squared errors divided by the variance that the policy predicts; 1 where it predicts its errors",
                 slope,
             ),
@@ -142,12 +142,12 @@ fn numbers(model: &Model) -> Markup {
         ),
         (COVERAGE.0.to_owned(), Some(numbers.direction_coverage), COVERAGE.1),
         (
-            of("Rotation: share of the policy that no potential explains", slope),
+            named("Rotation: share of the policy that no potential explains", slope),
             Some(numbers.rotation_share),
             Good::Words("0 for a potential"),
         ),
         (
-            of("Share of rollouts that leave the demonstrated region", "of PolicyAlign"),
+            named("Share of rollouts that leave the demonstrated region", "of PolicyAlign"),
             Some(numbers.leaving),
             Good::Below(TrustNumbers::GOOD_LEAVING),
         ),

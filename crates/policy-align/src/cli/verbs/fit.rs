@@ -229,8 +229,8 @@ fn divided(recordings: Recordings, names: &[String], place: &str) -> Result<(Rec
         recordings.episodes.into_iter().partition(|episode| names.contains(&episode.name));
     let mut findings = recordings.findings;
     findings.extend(without_copies(&mut others, &held));
-    let of = |episodes, findings| Recordings { state: recordings.state.clone(), episodes, findings };
-    Ok((of(others, findings), Some(of(held, vec![]))))
+    let with_episodes = |episodes, findings| Recordings { state: recordings.state.clone(), episodes, findings };
+    Ok((with_episodes(others, findings), Some(with_episodes(held, vec![]))))
 }
 
 /// The names of a share of the episodes, at least one and not all, evenly spaced.
