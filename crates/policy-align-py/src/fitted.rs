@@ -260,7 +260,7 @@ impl Fitted {
 impl Fitted {
     /// Options that prepare movements like the training data.
     fn prepared_alike(&self, preparing: Preparing) -> Result<PrepareOptions, Refusal> {
-        Ok(self.model.prepare_options(preparing.options(&[])?))
+        Ok(self.model.prepare_options(&preparing.options(&[])?))
     }
 
     /// States as columns, checked.

@@ -80,8 +80,8 @@ impl Model {
 
     /// Options that prepare recordings in the model's units and context, like those from which it was learnt.
     #[must_use]
-    pub fn prepare_options(&self, base: PrepareOptions) -> PrepareOptions {
-        PrepareOptions { scale: self.scale(), context: self.context_use(), ..base }
+    pub fn prepare_options(&self, base: &PrepareOptions) -> PrepareOptions {
+        PrepareOptions { scale: self.scale(), context: self.context_use(), ..base.clone() }
     }
 
     /// Which channels are the context of other recordings.

@@ -66,7 +66,7 @@ pub(crate) fn prepared_for(
     let mut own = config.under("read", reading)?.with_channels_of(model);
     own.elsewhere.clone_from(&reading.elsewhere);
     let reading = own;
-    let options = model.prepare_options(config.under("prepare", preparing)?.options(&reading)?);
+    let options = model.prepare_options(&config.under("prepare", preparing)?.options(&reading)?);
     let recordings = read(session, files, &reading)?;
     let prepared = prepare(recordings, &options).map_err(|error| Failure::prepare(&error, named(files)))?;
     let found = StateChannel::names(&prepared.state);

@@ -266,7 +266,7 @@ fn without_copies(others: &mut Vec<Episode>, held: &[Episode]) -> Option<Finding
 
 fn judged(held_out: &Recordings, options: &PrepareOptions, model: &Model) -> Result<Evaluation, Failure> {
     // In the units of the model, which it may have learnt.
-    let options = model.prepare_options(options.clone());
+    let options = model.prepare_options(options);
     let prepared = prepare(held_out, &options).map_err(|error| Failure::prepare(&error, "--hold-out".to_owned()))?;
     evaluate(model, &prepared, None)
         .map_err(|error| Failure::new(Exit::Refused, error.to_string(), "--hold-out", "other episodes"))
