@@ -29,7 +29,7 @@ fn report(count: usize, (many, one): (&str, &str), samples: usize, notes: &mut N
     }
     let (what, verb, them) = if count == 1 { (one, "is", "it was") } else { (many, "are", "they were") };
     let interpolated = format!("{} interpolated", counted(count, "sample"));
-    notes.decided(Subject::Jumps, interpolated, format!("{what} far from those before and after"), "--jumps");
+    notes.decided(Subject::Jumps, interpolated, format!("{what} far from those before and after"));
     let share = percent(count as f64 / samples as f64);
     notes.found(
         Verdict::Good,
