@@ -6,7 +6,7 @@
 mod drawn;
 
 use drawn::{descent, rng, rows, vector};
-use gp::{AutoGp, CurlTest, DirectGp, SlopeGp};
+use gp::{AutoGp, CurlTest, SlopeGp};
 use motion::{LearntPolicy, Policy, Potential as _};
 use nalgebra::DVector;
 
@@ -21,7 +21,7 @@ fn actions_and_potentials_allocate_nothing() {
         // More rows than fit in one chunk.
         let given = rows(dim, (6, 15), descent, &mut rng(1));
         let slope = SlopeGp { curl_test: CurlTest::AssumePotential, ..SlopeGp::default() };
-        let learner = AutoGp { slope, direct: DirectGp::default(), ..AutoGp::default() };
+        let learner = AutoGp { slope, ..AutoGp::default() };
         let both = learner.fit(&given, &mut rng(2)).unwrap();
         let (x, mut action) = (vector(dim, &mut rng(3)), DVector::zeros(dim));
         let policies: [&dyn LearntPolicy; 3] = [both.slope(), both.direct(), &both];

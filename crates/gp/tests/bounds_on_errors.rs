@@ -5,7 +5,7 @@
 use crate::fresh::{DataSet, Disturbed, beyond, judge};
 use crate::systems::{ANGLES, CHAIN, HIMMELBLAU, System, UNEVEN_WELLS, WELLS, error};
 use demo_gen::beyond::PolicyKind;
-use gp::{AutoFit, AutoGp, DirectGp, Family, FrontEnd, PushTest, Rows, SlopeGp};
+use gp::{AutoFit, AutoGp, Family, FrontEnd, PushTest, Rows, SlopeGp};
 use motion::{Demonstrations, Policy, Trajectory, scaled};
 use nalgebra::{DVector, DVectorView, DVectorViewMut};
 use rand::SeedableRng;
@@ -20,8 +20,7 @@ fn slope(push_test: PushTest) -> SlopeGp {
 }
 
 fn fit(rows: &Rows, push_test: PushTest, seed: u64) -> AutoFit {
-    let direct = DirectGp { max_rows: ROWS, hyper_rows: ROWS / 2, ..DirectGp::default() };
-    let learner = AutoGp { slope: slope(push_test), direct, ..AutoGp::default() };
+    let learner = AutoGp { slope: slope(push_test), ..AutoGp::default() };
     learner.fit(rows, &mut ChaCha8Rng::seed_from_u64(seed)).unwrap()
 }
 

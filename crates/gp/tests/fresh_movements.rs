@@ -5,7 +5,7 @@
 use crate::drawn;
 use crate::fresh::{DataSet, Disturbed, Judged, SYSTEMS, System, beyond, data_set, judge};
 use demo_gen::beyond::PolicyKind;
-use gp::{AutoGp, CurlTest, DirectGp, Family, FrontEnd, Rows, SlopeFit, SlopeGp};
+use gp::{AutoGp, CurlTest, Family, FrontEnd, Rows, SlopeFit, SlopeGp};
 use motion::{Demonstrations, Policy as _, Trajectory};
 
 const CLEAN: Disturbed = Disturbed { press: 0.0, noise: 0.0, told: false };
@@ -75,11 +75,7 @@ fn a_variance_may_be_given() {
 #[test]
 fn bars_and_expected_error_have_one_factor() {
     let DataSet { rows, .. } = data_set(system("quartic3"), CLEAN, 1);
-    let learner = AutoGp {
-        slope: quick(),
-        direct: DirectGp { families: vec![Family::Smooth], hyper_rows: 100, ..DirectGp::default() },
-        ..AutoGp::default()
-    };
+    let learner = AutoGp { slope: quick(), direct_families: vec![Family::Smooth], ..AutoGp::default() };
     let both = learner.fit(&rows, &mut drawn::rng(1)).expect("a fit");
     let alone = quick().fit(&rows, &mut drawn::rng(1)).expect("a fit");
     let (fit, report) = (both.slope(), both.slope().report());
@@ -96,11 +92,7 @@ fn bars_and_expected_error_have_one_factor() {
 
 /// Both Gaussian processes with 500 rows.
 fn learner() -> AutoGp {
-    AutoGp {
-        slope: SlopeGp { max_rows: 500, hyper_rows: 250, ..SlopeGp::default() },
-        direct: DirectGp { max_rows: 500, hyper_rows: 250, ..DirectGp::default() },
-        ..AutoGp::default()
-    }
+    AutoGp { slope: SlopeGp { max_rows: 500, hyper_rows: 250, ..SlopeGp::default() }, ..AutoGp::default() }
 }
 
 /// Errors, sorted.

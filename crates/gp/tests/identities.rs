@@ -55,7 +55,7 @@ proptest! {
         let learners: [Box<dyn Learner>; 3] = [
             Box::new(SlopeLearner { front_end: front_end.clone(), gp: slope(family) }),
             Box::new(DirectLearner { front_end: front_end.clone(), gp: direct(family) }),
-            Box::new(AutoGp { front_end, slope: slope(family), direct: direct(family), ..AutoGp::default() }),
+            Box::new(AutoGp { front_end, slope: slope(family), direct_families: vec![family], ..AutoGp::default() }),
         ];
         for learner in learners {
             let [learnt, of_forged] = [&recordings, &forged].map(|recordings| {

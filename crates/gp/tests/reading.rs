@@ -4,8 +4,7 @@ use crate::drawn::{descent, matrix, rng, rows};
 use demo_gen::beyond::{BeyondSystem, ConstraintKind, PolicyKind};
 use demo_gen::{demonstrations, with_velocity_noise};
 use gp::{
-    AutoFit, AutoGp, DirectGp, FrontEnd, Grouping, Hypothesis, LeastSeen, NearPasses, PushTest, ReadingNumbers, Rows,
-    SlopeGp,
+    AutoFit, AutoGp, FrontEnd, Grouping, Hypothesis, LeastSeen, NearPasses, PushTest, ReadingNumbers, Rows, SlopeGp,
 };
 use motion::{Policy as _, SampleIndex};
 use nalgebra::{DMatrix, DVector};
@@ -175,8 +174,7 @@ fn learnt(policy: PolicyKind, constraint: ConstraintKind, n_trajectories: usize,
         None => recordings,
     };
     let slope = SlopeGp { max_rows: 400, hyper_rows: 200, push_test: PushTest::Fit, ..SlopeGp::default() };
-    let direct = DirectGp { max_rows: 400, hyper_rows: 200, ..DirectGp::default() };
-    let learner = AutoGp { slope, direct, ..AutoGp::default() };
+    let learner = AutoGp { slope, ..AutoGp::default() };
     let rows = FrontEnd::Velocities.rows(&demonstrations(&recordings).expect("movements")).expect("rows");
     learner.fit(&rows, &mut self::rng(1)).expect("a fit")
 }

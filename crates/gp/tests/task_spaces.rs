@@ -2,7 +2,7 @@
 
 use demo_gen::tasks::{Contact, Wiping};
 use demo_gen::{Recording, demonstrations, with_velocity_noise};
-use gp::{AutoFit, AutoGp, DirectGp, FrontEnd, GpError, Hypothesis, PushTest, Rows, SlopeGp, TaskSpace};
+use gp::{AutoFit, AutoGp, FrontEnd, GpError, Hypothesis, PushTest, Rows, SlopeGp, TaskSpace};
 use kinematics::Workspace;
 use motion::{Policy, SampleIndex};
 use nalgebra::{DMatrix, DVector, Matrix6xX};
@@ -89,7 +89,6 @@ fn learnt(rows: &Rows) -> AutoFit {
     let (max_rows, hyper_rows) = (400, 200);
     let learner = AutoGp {
         slope: SlopeGp { max_rows, hyper_rows, push_test: PushTest::Fit, ..SlopeGp::default() },
-        direct: DirectGp { max_rows, hyper_rows, ..DirectGp::default() },
         ..AutoGp::default()
     };
     learner.fit(rows, &mut ChaCha8Rng::seed_from_u64(1)).unwrap()

@@ -13,7 +13,7 @@ use std::sync::atomic::AtomicBool;
 use cases::{Case, Has};
 use demo_gen::beyond::{BeyondSystem, ConstraintKind, PolicyKind};
 use demo_gen::{Grasp, HandInPlane, Recording, ThreeLinkArm, UpperBody, demonstrations, with_position_noise};
-use gp::{AutoFit, AutoGp, DirectGp, FrontEnd, PushTest, ReadingNumbers, SlopeGp};
+use gp::{AutoFit, AutoGp, FrontEnd, PushTest, ReadingNumbers, SlopeGp};
 use motion::LearntPolicy;
 use nalgebra::DMatrix;
 use policy_align::{FitOptions, Learnt, PrepareOptions, Progress, fit, prepare};
@@ -64,7 +64,6 @@ fn learnt(set: &Set, seed: u64) -> Option<AutoFit> {
             let learner = AutoGp {
                 front_end,
                 slope: SlopeGp { max_rows: MAX_ROWS, hyper_rows, push_test: PushTest::Fit, ..SlopeGp::default() },
-                direct: DirectGp { max_rows: MAX_ROWS, hyper_rows, ..DirectGp::default() },
                 ..AutoGp::default()
             };
             return learner.fit(&rows, &mut rng(seed)).ok();

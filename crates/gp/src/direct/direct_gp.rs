@@ -61,7 +61,7 @@ impl DirectGp {
     /// [`GpError::Parameter`], or the reason for refusing the rows: too few, no motion, one state, no Cholesky factor.
     pub fn fit<R: Rng + ?Sized>(&self, rows: &Rows, rng: &mut R) -> Result<DirectFit, GpError> {
         let kept = self.selection()?.keep(rows, rng)?;
-        Ok(self.outcome(&kept)?.fit)
+        Ok(fit_direct(&self.families, &kept)?.fit)
     }
 
     fn selection(&self) -> Result<Selection, GpError> {
@@ -72,23 +72,24 @@ impl DirectGp {
         let &DirectGp { max_rows, hyper_rows, least_snr, least_speed, .. } = self;
         Ok(Selection { max_rows, hyper_rows, least_snr, least_speed })
     }
+}
 
-    pub(crate) fn outcome(&self, kept: &Kept) -> Result<DirectOutcome, GpError> {
-        let data = DirectData::from_kept(kept)?;
-        let fit = |family: Family| data.fit(&family.direct_blocks(), &kept.hyper);
-        let tried = each_until_exact(&self.families, fit, |fit| &fit.level.left_out);
-        let tried = tried.into_iter().filter_map(|(family, fit)| Some((family, fit?)));
-        let better = |best: (Family, FamilyFit), next: (Family, FamilyFit)| {
-            if best.1.level.left_out.r_squared >= next.1.level.left_out.r_squared { best } else { next }
-        };
-        let (family, fit) = tried.reduce(better).ok_or(GpError::NoFactor)?;
-        let blocks = family.direct_blocks();
-        let left_out = fit.level.left_out.clone();
-        let model = data.model(blocks, fit);
-        let actions = model.moving_actions(kept.states.as_view());
-        let fit = DirectFit { model, family, r_squared: left_out.r_squared, z_squared: left_out.z_squared };
-        Ok(DirectOutcome { data, fit, left_out, actions })
-    }
+/// The model of the family that best predicts held-out trajectories.
+pub(crate) fn fit_direct(families: &[Family], kept: &Kept) -> Result<DirectOutcome, GpError> {
+    let data = DirectData::from_kept(kept)?;
+    let fit = |family: Family| data.fit(&family.direct_blocks(), &kept.hyper);
+    let tried = each_until_exact(families, fit, |fit| &fit.level.left_out);
+    let tried = tried.into_iter().filter_map(|(family, fit)| Some((family, fit?)));
+    let better = |best: (Family, FamilyFit), next: (Family, FamilyFit)| {
+        if best.1.level.left_out.r_squared >= next.1.level.left_out.r_squared { best } else { next }
+    };
+    let (family, fit) = tried.reduce(better).ok_or(GpError::NoFactor)?;
+    let blocks = family.direct_blocks();
+    let left_out = fit.level.left_out.clone();
+    let model = data.model(blocks, fit);
+    let actions = model.moving_actions(kept.states.as_view());
+    let fit = DirectFit { model, family, r_squared: left_out.r_squared, z_squared: left_out.z_squared };
+    Ok(DirectOutcome { data, fit, left_out, actions })
 }
 
 impl DirectOutcome {

@@ -2,7 +2,8 @@
 
 use nalgebra::DMatrix;
 
-use crate::direct::direct_gp::{DirectGp, DirectOutcome};
+use crate::direct::direct_gp::{DirectOutcome, fit_direct};
+use crate::kernel::family::Family;
 use crate::rows::kept::Kept;
 
 /// Rows count as free if their squared left-out error is at most this multiple of a low quantile.
@@ -46,11 +47,10 @@ impl OfFreeRows {
 
     /// Repeats the fit, with one family, without the rows that it predicts worst until these no longer change; at last with all families.
     /// `None` if `all`, the fit of all rows, has no such rows or too many, or if they do not look like deflected ones.
-    pub(crate) fn of(gp: &DirectGp, kept: &Kept, all: &DirectOutcome) -> Option<OfFreeRows> {
+    pub(crate) fn of(families: &[Family], kept: &Kept, all: &DirectOutcome) -> Option<OfFreeRows> {
         if all.left_out.is_nearly_exact() {
             return None;
         }
-        let one_family = DirectGp { families: vec![all.fit.family], ..gp.clone() };
         let mut found: Option<OfFreeRows> = None;
         for _ in 0..ROUNDS {
             let direct = found.as_ref().map_or(all, |found| &found.direct);
@@ -67,7 +67,7 @@ impl OfFreeRows {
                 return None;
             }
             let within = direct.fit.model.unit * limit.sqrt();
-            let direct = one_family.outcome(&without_deflected(kept, &free)).ok()?;
+            let direct = fit_direct(&[all.fit.family], &without_deflected(kept, &free)).ok()?;
             let next = OfFreeRows::new(direct, free, within, kept);
             if found.is_some() && next.along * kept.velocities.nrows() as f64 > HOPELESS {
                 return None;
@@ -75,10 +75,10 @@ impl OfFreeRows {
             found = Some(next);
         }
         let found = found?;
-        if found.direct.left_out.is_exact() || gp.families.len() == 1 {
+        if found.direct.left_out.is_exact() || families.len() == 1 {
             return Some(found);
         }
-        let direct = gp.outcome(&without_deflected(kept, &found.free)).ok()?;
+        let direct = fit_direct(families, &without_deflected(kept, &found.free)).ok()?;
         Some(OfFreeRows::new(direct, found.free, found.within, kept))
     }
 

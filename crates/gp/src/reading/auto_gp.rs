@@ -6,8 +6,9 @@ use nalgebra::{DMatrix, DMatrixView, DVectorView, DVectorViewMut};
 use rand::Rng;
 use serde::{Deserialize, Serialize};
 
-use crate::direct::direct_gp::{DirectFit, DirectGp};
+use crate::direct::direct_gp::{DirectFit, fit_direct};
 use crate::direct::free_rows::near;
+use crate::kernel::family::Family;
 use crate::left_out::comparison::{difference, much_better};
 use crate::reading::Hypothesis;
 use crate::reading::both::{Both, LeftOutErrors};
@@ -28,8 +29,8 @@ pub struct AutoGp {
     pub front_end: FrontEnd,
     /// The learner for constrained movement; its limits on rows apply to both.
     pub slope: SlopeGp,
-    /// The learner for free movement.
-    pub direct: DirectGp,
+    /// Families of the learner for free movement, as [`DirectGp::families`](crate::DirectGp::families).
+    pub direct_families: Vec<Family>,
     /// A reading given by the user, which overrides that of the data.
     pub reading: Option<Hypothesis>,
     /// Whether to look for rows of free motion among constrained ones (R10), unless the reading is given.
@@ -38,8 +39,8 @@ pub struct AutoGp {
 
 impl Default for AutoGp {
     fn default() -> Self {
-        let (front_end, slope, direct) = (FrontEnd::default(), SlopeGp::default(), DirectGp::default());
-        AutoGp { front_end, slope, direct, reading: None, free_rows: true }
+        let (front_end, slope, direct_families) = (FrontEnd::default(), SlopeGp::default(), Family::ALL.to_vec());
+        AutoGp { front_end, slope, direct_families, reading: None, free_rows: true }
     }
 }
 
@@ -69,13 +70,13 @@ impl AutoGp {
     /// Learns from rows. The generator draws one permutation and, if rows are thinned, an offset.
     ///
     /// # Errors
-    /// As [`SlopeGp::fit`] and [`DirectGp::fit`].
+    /// As [`SlopeGp::fit`] and [`DirectGp::fit`](crate::DirectGp::fit).
     pub fn fit<R: Rng + ?Sized>(&self, rows: &Rows, rng: &mut R) -> Result<AutoFit, GpError> {
         let kept = self.slope.selection()?.keep(rows, rng)?;
-        let (slope, direct) = rayon::join(|| outcome(&self.slope, &kept), || self.direct.outcome(&kept));
+        let (slope, direct) = rayon::join(|| outcome(&self.slope, &kept), || fit_direct(&self.direct_families, &kept));
         let few = Both { kept, slope: slope?, direct: direct?, freely: None };
         let look = self.free_rows && self.reading.is_none();
-        let few = if look { few.with_free_rows(&self.direct) } else { few };
+        let few = if look { few.with_free_rows(&self.direct_families) } else { few };
         // Free rows that explain the others leave no push to explain.
         let free = few.freely.is_some() || few.compared(None).0.agree_on_free_movement();
         let pushed = if free { None } else { pushed(&self.slope, rows, &few.kept, &few.slope) };

@@ -1,8 +1,9 @@
 //! The slope GP and the direct GP on the same rows, before one of them is selected.
 
 use crate::Rows;
-use crate::direct::direct_gp::{DirectGp, DirectOutcome};
+use crate::direct::direct_gp::DirectOutcome;
 use crate::direct::free_rows::OfFreeRows;
+use crate::kernel::family::Family;
 use crate::reading::numbers::{Compared, LeftOutRow, ReadingNumbers, TrajectoryErrors};
 use crate::rows::kept::Kept;
 use crate::slope::all_rows::{OnAllRows, on_all_samples};
@@ -27,8 +28,8 @@ pub(crate) struct LeftOutErrors {
 
 impl Both {
     /// Adds the direct GP of the free rows if it explains the others (R10).
-    pub(crate) fn with_free_rows(mut self, gp: &DirectGp) -> Both {
-        self.freely = OfFreeRows::of(gp, &self.kept, &self.direct);
+    pub(crate) fn with_free_rows(mut self, families: &[Family]) -> Both {
+        self.freely = OfFreeRows::of(families, &self.kept, &self.direct);
         self.freely_if_it_explains_all()
     }
 

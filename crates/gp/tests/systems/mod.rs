@@ -1,5 +1,5 @@
 //! Potentials to descend under constraints A u = b, which differ between movements and switch once within each.
-use gp::{AutoFit, AutoGp, DirectGp, PushTest, Rows, SlopeGp};
+use gp::{AutoFit, AutoGp, PushTest, Rows, SlopeGp};
 use motion::{Demonstrations, Policy, Trajectory};
 use nalgebra::{DMatrix, DVector};
 use rand::{RngExt, SeedableRng};
@@ -164,8 +164,7 @@ pub(crate) fn learnt(rows: &Rows, seed: u64) -> AutoFit {
 pub(crate) fn learnt_with(inducing_rows: usize, rows: &Rows, seed: u64) -> AutoFit {
     let (max_rows, hyper_rows) = (400, 200);
     let slope = SlopeGp { max_rows, hyper_rows, inducing_rows, push_test: PushTest::Fit, ..SlopeGp::default() };
-    let direct = DirectGp { max_rows, hyper_rows, ..DirectGp::default() };
-    let learner = AutoGp { slope, direct, ..AutoGp::default() };
+    let learner = AutoGp { slope, ..AutoGp::default() };
     learner.fit(rows, &mut ChaCha8Rng::seed_from_u64(seed)).unwrap()
 }
 

@@ -1,5 +1,5 @@
 use align::Bandwidth;
-use gp::{AutoGp, DirectGp, FrontEnd, Hypothesis, PushTest, SlopeGp};
+use gp::{AutoGp, FrontEnd, Hypothesis, PushTest, SlopeGp};
 use serde::{Deserialize, Serialize};
 
 use crate::FitError;
@@ -78,9 +78,9 @@ impl FitOptions {
                 push_test: PushTest::Fit,
                 ..SlopeGp::default()
             },
-            direct: DirectGp { max_rows, hyper_rows, ..DirectGp::default() },
             reading,
             free_rows: self.learner != LearnerChoice::Direct,
+            ..AutoGp::default()
         }
     }
 

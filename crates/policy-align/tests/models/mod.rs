@@ -60,7 +60,7 @@ pub(crate) fn direct(demonstrations: &Demonstrations) -> Model {
 }
 
 pub(crate) fn auto(demonstrations: &Demonstrations) -> Model {
-    let learner = AutoGp { slope: slope_gp(), direct: direct_gp(), ..AutoGp::default() };
+    let learner = AutoGp { slope: slope_gp(), ..AutoGp::default() };
     let fit = learner.fit(&rows(demonstrations), &mut ChaCha8Rng::seed_from_u64(1)).unwrap();
     model(Learnt::Auto(Box::new(fit)), demonstrations)
 }

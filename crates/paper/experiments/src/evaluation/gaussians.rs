@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use gp::{AutoFit, AutoGp, DirectGp, FrontEnd, Hypothesis, ModelKind, PushTest, SlopeFit, SlopeGp, Trend};
+use gp::{AutoFit, AutoGp, FrontEnd, Hypothesis, ModelKind, PushTest, SlopeFit, SlopeGp, Trend};
 use motion::{Demonstrations, LearntPolicy, SampleIndex, SampleSet};
 use rand_chacha::ChaCha8Rng;
 use serde::Serialize;
@@ -56,11 +56,7 @@ impl Gaussians {
         held_out: &[SampleIndex],
         rng: &mut ChaCha8Rng,
     ) -> anyhow::Result<AutoFit> {
-        let learner = AutoGp {
-            slope: self.slope_gp(Trend::Quadratic),
-            direct: DirectGp { max_rows: self.max_rows, hyper_rows: self.hyper_rows, ..DirectGp::default() },
-            ..AutoGp::default()
-        };
+        let learner = AutoGp { slope: self.slope_gp(Trend::Quadratic), ..AutoGp::default() };
         Ok(learner.fit(&self.rows(demonstrations, held_out)?, rng)?)
     }
 
