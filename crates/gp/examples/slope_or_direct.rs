@@ -25,10 +25,9 @@ fn recorded(on_rails: bool) -> Result<Demonstrations, MotionError> {
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let learner = AutoGp { front_end: FrontEnd::Velocities, ..AutoGp::default() };
     for on_rails in [true, false] {
-        let rows = learner.front_end.rows(&recorded(on_rails)?)?;
-        let learnt = learner.fit(&rows, &mut StdRng::seed_from_u64(1))?;
+        let rows = FrontEnd::Velocities.rows(&recorded(on_rails)?)?;
+        let learnt = AutoGp::default().fit(&rows, &mut StdRng::seed_from_u64(1))?;
         println!("movements on rails: {on_rails}; the data say {:?}", learnt.reading());
         println!("  {}", learnt.text());
         let x = dvector![0.3, -0.4];

@@ -27,9 +27,8 @@
 //! });
 //! let demonstrations = Demonstrations::new(movements.collect::<Result<_, _>>()?)?;
 //!
-//! let learner = AutoGp { front_end: FrontEnd::Velocities, ..AutoGp::default() };
-//! let rows = learner.front_end.rows(&demonstrations)?;
-//! let learnt = learner.fit(&rows, &mut rand::rngs::StdRng::seed_from_u64(1))?;
+//! let rows = FrontEnd::Velocities.rows(&demonstrations)?;
+//! let learnt = AutoGp::default().fit(&rows, &mut rand::rngs::StdRng::seed_from_u64(1))?;
 //!
 //! assert_eq!(learnt.reading(), Hypothesis::Constrained); // so that the slope GP's policy is handed out
 //! let x = dvector![0.3, -0.4];
@@ -71,6 +70,7 @@ mod evidence;
 mod formula;
 mod inducing;
 mod kernel;
+mod learner;
 mod left_out;
 mod outline;
 mod reading;
@@ -85,7 +85,6 @@ mod support;
 pub use constraint_estimate::{Acting, ConstraintEstimates, StretchEstimate};
 pub use direct::data::DirectData;
 pub use direct::direct_gp::{DirectFit, DirectGp};
-pub use direct::learner::DirectLearner;
 pub use direct::model::DirectModel;
 pub use error::GpError;
 pub use evidence::Evidence;
@@ -96,6 +95,7 @@ pub use kernel::falling::{Falling, Series, Summand};
 pub use kernel::family::{Family, Trend};
 pub use kernel::shape::Shape;
 pub use kernel::term::{Exponential, Fall, Term};
+pub use learner::{GpLearner, LearnsFromRows};
 pub use left_out::LeftOutPredictions;
 pub use left_out::curl_test::CurlTest;
 pub use reading::Hypothesis;
@@ -111,7 +111,6 @@ pub use rows::{MOST_ROWS, Rows};
 pub use scales::LearntScales;
 pub use slope::data::SlopeData;
 pub use slope::fit::SlopeFit;
-pub use slope::learner::SlopeLearner;
 pub use slope::model::SlopeModel;
 pub use slope::policy::{SlopePolicy, SlopePotential};
 pub use slope::push_test::PushTest;

@@ -10,7 +10,7 @@ use proptest::prelude::*;
 
 fn learner(max_rows: usize) -> AutoGp {
     let slope = SlopeGp { max_rows, hyper_rows: max_rows / 2, ..SlopeGp::default() };
-    AutoGp { front_end: FrontEnd::Velocities, slope, ..AutoGp::default() }
+    AutoGp { slope, ..AutoGp::default() }
 }
 
 /// Multiplies contexts by their factors.

@@ -1,7 +1,7 @@
 //! Movements of which constraints deflect only some (R10).
 
 use crate::drawn::{matrix, nupe, rng, vector};
-use gp::{AutoFit, AutoGp, DirectGp, FrontEnd, Hypothesis, Rows, SlopeGp};
+use gp::{AutoFit, AutoGp, DirectGp, Hypothesis, Rows, SlopeGp};
 use motion::{Policy as _, SampleIndex};
 use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
@@ -34,7 +34,7 @@ fn normal(seed: u64) -> DVector<f64> {
 
 fn learner() -> AutoGp {
     let slope = SlopeGp { max_rows: 200, hyper_rows: 100, ..SlopeGp::default() };
-    AutoGp { front_end: FrontEnd::Velocities, slope, ..AutoGp::default() }
+    AutoGp { slope, ..AutoGp::default() }
 }
 
 fn fit(learner: &AutoGp, rows: &Rows, seed: u64) -> AutoFit {

@@ -2,9 +2,7 @@
 
 use crate::drawn::{descent, matrix, rng, rows, vector};
 use demo_gen::{Recording, Redraw, ToyPotential, ToySystem, demonstrations};
-use gp::{
-    AutoGp, DirectData, DirectGp, DirectLearner, Family, FrontEnd, Rows, SlopeData, SlopeGp, SlopeLearner, Trend,
-};
+use gp::{AutoGp, DirectData, DirectGp, Family, FrontEnd, GpLearner, Rows, SlopeData, SlopeGp, Trend};
 use motion::{Learner, LearntPolicy, Policy as _, SampleIndex};
 use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
@@ -53,9 +51,9 @@ proptest! {
         let all = (0..n_trajectories).flat_map(|trajectory| (0..n_samples).map(move |sample| SampleIndex { trajectory, sample }));
         let held_out: Vec<SampleIndex> = all.filter(|_| rng_of_samples.random_bool(share)).collect();
         let learners: [Box<dyn Learner>; 3] = [
-            Box::new(SlopeLearner { front_end: front_end.clone(), gp: slope(family) }),
-            Box::new(DirectLearner { front_end: front_end.clone(), gp: direct(family) }),
-            Box::new(AutoGp { front_end, slope: slope(family), direct_families: vec![family], ..AutoGp::default() }),
+            Box::new(GpLearner { front_end: front_end.clone(), gp: slope(family) }),
+            Box::new(GpLearner { front_end: front_end.clone(), gp: direct(family) }),
+            Box::new(GpLearner { front_end, gp: AutoGp { slope: slope(family), direct_families: vec![family], ..AutoGp::default() } }),
         ];
         for learner in learners {
             let [learnt, of_forged] = [&recordings, &forged].map(|recordings| {

@@ -61,12 +61,8 @@ fn learnt(set: &Set, seed: u64) -> Option<AutoFit> {
         Learning::Crate(front_end) => {
             let rows = front_end.rows(&demonstrations(&set.recordings).unwrap()).ok()?;
             let hyper_rows = MAX_ROWS / 2;
-            let learner = AutoGp {
-                front_end,
-                slope: SlopeGp { max_rows: MAX_ROWS, hyper_rows, push_test: PushTest::Fit, ..SlopeGp::default() },
-                ..AutoGp::default()
-            };
-            return learner.fit(&rows, &mut rng(seed)).ok();
+            let slope = SlopeGp { max_rows: MAX_ROWS, hyper_rows, push_test: PushTest::Fit, ..SlopeGp::default() };
+            return AutoGp { slope, ..AutoGp::default() }.fit(&rows, &mut rng(seed)).ok();
         }
         Learning::Program(noise) => (Has::Velocities, noise),
         Learning::Positions(_) => (Has::Positions, 0.0),

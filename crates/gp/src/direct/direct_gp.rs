@@ -1,13 +1,16 @@
-use nalgebra::DMatrix;
+use motion::{Certainty, LearntPolicy, Policy};
+use nalgebra::{DMatrix, DMatrixView, DVectorView, DVectorViewMut};
 use rand::Rng;
 use serde::{Deserialize, Serialize};
 
+use crate::dimension::require;
 use crate::direct::data::DirectData;
 use crate::direct::model::DirectModel;
 use crate::evidence::family_fit::{FamilyFit, each_until_exact};
 use crate::kernel::family::Family;
 use crate::left_out::{LeftOutPredictions, poorly_predicted};
 use crate::rows::kept::{Kept, Selection};
+use crate::support::only_deviation_into;
 use crate::{GpError, Rows};
 
 /// A Gaussian process on velocities, for unconstrained motion. All components share one covariance.
@@ -129,5 +132,43 @@ impl DirectFit {
     /// Warnings about the policy, one sentence each.
     pub fn doubts(&self) -> Vec<String> {
         poorly_predicted(self.r_squared).into_iter().collect()
+    }
+}
+
+impl Policy for DirectFit {
+    fn dim(&self) -> usize {
+        self.model.dim()
+    }
+
+    fn action_into(&self, state: DVectorView<'_, f64>, action: DVectorViewMut<'_, f64>) {
+        self.model.action_into(state, action);
+    }
+
+    fn actions(&self, states: DMatrixView<'_, f64>) -> DMatrix<f64> {
+        self.model.actions(states)
+    }
+}
+
+impl LearntPolicy for DirectFit {
+    fn support(&self, state: DVectorView<'_, f64>) -> f64 {
+        self.certainty(state.as_view()).support[0]
+    }
+
+    fn action_sd_into(&self, state: DVectorView<'_, f64>, deviation: DVectorViewMut<'_, f64>) -> bool {
+        only_deviation_into(&self.certainty(state.as_view()), deviation)
+    }
+
+    fn certainty(&self, states: DMatrixView<'_, f64>) -> Certainty {
+        require(self.dim(), &[states.nrows()]);
+        self.model.variances(states).certainty(self.z_squared.max(1.0), self.model.weights.nrows(), self.dim())
+    }
+
+    fn supported(&self, states: DMatrixView<'_, f64>, least: f64) -> Vec<bool> {
+        require(self.dim(), &[states.nrows()]);
+        self.model.supported(states, least)
+    }
+
+    fn warnings(&self) -> Vec<String> {
+        self.doubts()
     }
 }

@@ -3,5 +3,4 @@
 pub(crate) mod data;
 pub(crate) mod direct_gp;
 pub(crate) mod free_rows;
-pub(crate) mod learner;
 pub(crate) mod model;

@@ -1,7 +1,7 @@
 use std::borrow::Cow;
 use std::cmp::Ordering;
 
-use motion::{Certainty, Demonstrations, LearnError, Learner, LearntPolicy, Policy, Potential, SampleIndex};
+use motion::{Certainty, LearntPolicy, Policy, Potential};
 use nalgebra::{DMatrix, DMatrixView, DVectorView, DVectorViewMut};
 use rand::Rng;
 use serde::{Deserialize, Serialize};
@@ -19,14 +19,12 @@ use crate::slope::judgement::{NOTHING_KNOWN, ReportInput, report};
 use crate::slope::pushed::{Pushed, pushed};
 use crate::slope::search::outcome;
 use crate::slope::slope_gp::SlopeGp;
-use crate::{FrontEnd, GpError, Rows};
+use crate::{GpError, Rows};
 
 /// Fits the slope GP and the direct GP to the same rows, compares them on held-out demonstrations, and returns the policy that the data
 /// support (R8). No single learner is right for both free and constrained movement.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct AutoGp {
-    /// The front end, which turns recordings into rows.
-    pub front_end: FrontEnd,
     /// The learner for constrained movement; its limits on rows apply to both.
     pub slope: SlopeGp,
     /// Families of the learner for free movement, as [`DirectGp::families`](crate::DirectGp::families).
@@ -39,8 +37,7 @@ pub struct AutoGp {
 
 impl Default for AutoGp {
     fn default() -> Self {
-        let (front_end, slope, direct_families) = (FrontEnd::default(), SlopeGp::default(), Family::ALL.to_vec());
-        AutoGp { front_end, slope, direct_families, reading: None, free_rows: true }
+        AutoGp { slope: SlopeGp::default(), direct_families: Family::ALL.to_vec(), reading: None, free_rows: true }
     }
 }
 
@@ -114,17 +111,6 @@ impl AutoGp {
         let LeftOutErrors { trajectories: left_out, rows: left_out_rows } = left_out;
         let (reading, overridden) = (Some(reading), self.reading);
         Ok(AutoFit { slope, direct, freely, numbers, reading, overridden, left_out, left_out_rows })
-    }
-}
-
-impl Learner for AutoGp {
-    fn learn(
-        &self,
-        demonstrations: &Demonstrations,
-        held_out: &[SampleIndex],
-        rng: &mut dyn Rng,
-    ) -> Result<Box<dyn LearntPolicy>, LearnError> {
-        Ok(Box::new(self.fit(&self.front_end.rows_but(demonstrations, held_out)?, rng)?))
     }
 }
 

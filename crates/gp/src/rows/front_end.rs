@@ -71,7 +71,10 @@ impl FrontEnd {
     }
 
     /// The rows of samples that are not held out.
-    pub(crate) fn rows_but(&self, demonstrations: &Demonstrations, held_out: &[SampleIndex]) -> Result<Rows, GpError> {
+    ///
+    /// # Errors
+    /// As [`FrontEnd::rows`].
+    pub fn rows_without(&self, demonstrations: &Demonstrations, held_out: &[SampleIndex]) -> Result<Rows, GpError> {
         let held_out = SampleSet::of(held_out);
         let rows = self.rows(demonstrations)?;
         Ok(rows.without(|trajectory, sample| held_out.contains(SampleIndex { trajectory, sample })))

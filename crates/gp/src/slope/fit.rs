@@ -1,6 +1,8 @@
-use nalgebra::{DMatrix, DVectorView};
+use motion::{Certainty, LearntPolicy, Policy, Potential};
+use nalgebra::{DMatrix, DMatrixView, DVectorView, DVectorViewMut};
 use rand::Rng;
 
+use crate::dimension::require;
 use crate::report::trust_report::TrustReport;
 use crate::slope::all_rows::{OnAllRows, on_all_samples};
 use crate::slope::cross_path::CrossPathEvidence;
@@ -10,6 +12,7 @@ use crate::slope::policy::{SlopePolicy, SlopePotential};
 use crate::slope::pushed::{Pushed, pushed};
 use crate::slope::search::outcome;
 use crate::slope::slope_gp::SlopeGp;
+use crate::support::only_deviation_into;
 use crate::{GpError, Rows};
 
 /// A fitted slope GP: policy, uncertainty and trust report.
@@ -73,5 +76,48 @@ impl SlopeFit {
     /// Numbers and warnings about the fit.
     pub fn report(&self) -> &TrustReport {
         &self.report
+    }
+}
+
+impl Policy for SlopeFit {
+    fn dim(&self) -> usize {
+        self.model.policy().dim()
+    }
+
+    fn action_into(&self, state: DVectorView<'_, f64>, action: DVectorViewMut<'_, f64>) {
+        self.model.policy().action_into(state, action);
+    }
+
+    fn actions(&self, states: DMatrixView<'_, f64>) -> DMatrix<f64> {
+        self.model.policy().actions(states)
+    }
+}
+
+impl LearntPolicy for SlopeFit {
+    fn potential(&self) -> Option<&dyn Potential> {
+        self.model.potential().map(|potential| potential as &dyn Potential)
+    }
+
+    fn support(&self, state: DVectorView<'_, f64>) -> f64 {
+        self.certainty(state.as_view()).support[0]
+    }
+
+    fn action_sd_into(&self, state: DVectorView<'_, f64>, deviation: DVectorViewMut<'_, f64>) -> bool {
+        only_deviation_into(&self.certainty(state.as_view()), deviation)
+    }
+
+    fn certainty(&self, states: DMatrixView<'_, f64>) -> Certainty {
+        require(self.dim(), &[states.nrows()]);
+        let moving = self.model.expansion().moving();
+        self.model.variances(states).certainty(self.report.variance_factor(), moving, self.dim())
+    }
+
+    fn supported(&self, states: DMatrixView<'_, f64>, least: f64) -> Vec<bool> {
+        require(self.dim(), &[states.nrows()]);
+        self.model.supported(states, least)
+    }
+
+    fn warnings(&self) -> Vec<String> {
+        self.report.warnings()
     }
 }

@@ -7,7 +7,6 @@ pub(crate) mod data;
 pub(crate) mod expansion;
 pub(crate) mod fit;
 pub(crate) mod judgement;
-pub(crate) mod learner;
 pub(crate) mod least_hidden;
 pub(crate) mod model;
 pub(crate) mod policy;

@@ -1,5 +1,5 @@
 use align::Bandwidth;
-use gp::{AutoGp, FrontEnd, Hypothesis, PushTest, SlopeGp};
+use gp::{AutoGp, Hypothesis, PushTest, SlopeGp};
 use serde::{Deserialize, Serialize};
 
 use crate::FitError;
@@ -70,7 +70,6 @@ impl FitOptions {
         let &FitOptions { max_rows, inducing, reading, .. } = self;
         let hyper_rows = (max_rows as f64 * HYPER_SHARE) as usize;
         AutoGp {
-            front_end: FrontEnd::Velocities, // the rows exist already
             slope: SlopeGp {
                 max_rows,
                 hyper_rows,

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use gp::{AutoFit, AutoGp, FrontEnd, Hypothesis, ModelKind, PushTest, SlopeFit, SlopeGp, Trend};
-use motion::{Demonstrations, LearntPolicy, SampleIndex, SampleSet};
+use motion::{Demonstrations, LearntPolicy, SampleIndex};
 use rand_chacha::ChaCha8Rng;
 use serde::Serialize;
 
@@ -57,7 +57,7 @@ impl Gaussians {
         rng: &mut ChaCha8Rng,
     ) -> anyhow::Result<AutoFit> {
         let learner = AutoGp { slope: self.slope_gp(Trend::Quadratic), ..AutoGp::default() };
-        Ok(learner.fit(&self.rows(demonstrations, held_out)?, rng)?)
+        Ok(learner.fit(&self.front_end.rows_without(demonstrations, held_out)?, rng)?)
     }
 
     /// Fits the slope GP alone. Without a trend its families contain no quadratic potential, which shows the error if the
@@ -69,18 +69,12 @@ impl Gaussians {
         held_out: &[SampleIndex],
         rng: &mut ChaCha8Rng,
     ) -> anyhow::Result<SlopeFit> {
-        Ok(self.slope_gp(trend).fit(&self.rows(demonstrations, held_out)?, rng)?)
+        Ok(self.slope_gp(trend).fit(&self.front_end.rows_without(demonstrations, held_out)?, rng)?)
     }
 
     fn slope_gp(&self, trend: Trend) -> SlopeGp {
         let &Gaussians { max_rows, hyper_rows, push_test, .. } = self;
         SlopeGp { trend, max_rows, hyper_rows, push_test, ..SlopeGp::default() }
-    }
-
-    fn rows(&self, demonstrations: &Demonstrations, held_out: &[SampleIndex]) -> anyhow::Result<gp::Rows> {
-        let held_out = SampleSet::of(held_out);
-        let rows = self.front_end.rows(demonstrations)?;
-        Ok(rows.without(|trajectory, sample| held_out.contains(SampleIndex { trajectory, sample })))
     }
 }
 

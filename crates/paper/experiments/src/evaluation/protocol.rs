@@ -128,7 +128,7 @@ impl<'a> Evaluation<'a> {
 mod tests {
     use align::{Bandwidth, DirectPolicyLearning, LwprRegressor};
     use demo_gen::{ToyPotential, ToySystem};
-    use gp::{AutoGp, SlopeGp, SlopeLearner};
+    use gp::{AutoGp, GpLearner, SlopeGp};
     use proptest::prelude::*;
 
     use super::*;
@@ -139,8 +139,9 @@ mod tests {
         vec![
             Candidate::PolicyAlign(LwprRegressor { passes: 2, ..LwprRegressor::default() }),
             Candidate::other(DirectPolicyLearning::default()).unwrap(),
-            Candidate::other(SlopeLearner { gp: slope(), ..SlopeLearner::default() }).unwrap(),
-            Candidate::other(AutoGp { slope: slope(), ..AutoGp::default() }).unwrap(),
+            Candidate::other(GpLearner { gp: slope(), ..GpLearner::default() }).unwrap(),
+            Candidate::other(GpLearner { gp: AutoGp { slope: slope(), ..AutoGp::default() }, ..GpLearner::default() })
+                .unwrap(),
         ]
     }
 
