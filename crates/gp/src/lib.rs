@@ -100,7 +100,6 @@ pub use left_out::LeftOutPredictions;
 pub use left_out::curl_test::CurlTest;
 pub use reading::Hypothesis;
 pub use reading::auto_gp::{AutoFit, AutoGp};
-pub use reading::near_passes::NearPasses;
 pub use reading::numbers::{FreeRows, LeftOutRow, ReadingNumbers, TrajectoryErrors};
 pub use report::identifiability::{Identifiability, LeastSeen};
 pub use report::trust_report::{FamilyNumbers, FamilyReport, ModelKind, TrustReport};

@@ -1,53 +1,11 @@
-//! Near passes, and the rule that selects a reading.
+//! The rule that selects a reading.
 
-use crate::drawn::{descent, matrix, rng, rows};
+use crate::drawn::{descent, rng, rows};
 use demo_gen::beyond::{BeyondSystem, ConstraintKind, PolicyKind};
 use demo_gen::{demonstrations, with_velocity_noise};
-use gp::{
-    AutoFit, AutoGp, FrontEnd, Grouping, Hypothesis, LeastSeen, NearPasses, PushTest, ReadingNumbers, Rows, SlopeGp,
-};
-use motion::{Policy as _, SampleIndex};
-use nalgebra::{DMatrix, DVector};
+use gp::{AutoFit, AutoGp, FrontEnd, Grouping, Hypothesis, LeastSeen, PushTest, ReadingNumbers, SlopeGp};
+use motion::Policy as _;
 use proptest::prelude::*;
-
-/// `trajectories` copies of the same states; `sign` determines each trajectory's direction.
-fn copies(trajectories: usize, per: usize, sign: impl Fn(usize) -> f64, seed: u64) -> Rows {
-    let rng = &mut rng(seed);
-    let (x, u) = (matrix(3, per, rng), matrix(3, per, rng) + DMatrix::from_element(3, per, 5.0));
-    let states: Vec<DVector<f64>> = (0..trajectories * per).map(|row| x.column(row % per).into_owned()).collect();
-    let moves: Vec<DVector<f64>> = (0..trajectories * per).map(|row| u.column(row % per) * sign(row / per)).collect();
-    let index = |row: usize| SampleIndex { trajectory: row / per, sample: row % per };
-    let indices = (0..trajectories * per).map(index).collect();
-    Rows::new(DMatrix::from_columns(&states), DMatrix::from_columns(&moves), indices).expect("finite rows")
-}
-
-proptest! {
-    #![proptest_config(ProptestConfig::with_cases(50))]
-
-    /// A movement differs from its copy by 0, from its reverse by 2.
-    #[test]
-    fn copies_differ_by_zero_and_reversals_by_two(per in 4_usize..12, seed in any::<u64>()) {
-        let near = |rows: &Rows| NearPasses::of(rows, 1e-9, &mut rng(0)).expect("a distance");
-        let same = near(&copies(3, per, |_| 1.0, seed));
-        prop_assert_eq!((same.pairs, same.samples, same.share), (3, 3 * per, Some(0.0)));
-        let turned = near(&copies(2, per, |k| if k == 0 { 1.0 } else { -1.0 }, seed));
-        prop_assert!((turned.share.expect("they meet") - 2.0).abs() < 1e-12);
-        let alone = near(&copies(1, per, |_| 1.0, seed));
-        prop_assert_eq!((alone.pairs, alone.share), (0, None));
-    }
-
-    /// Counts grow with the distance; units do not matter.
-    #[test]
-    fn units_do_not_matter(seed in any::<u64>(), near in 0.02..0.2, more in 1.0..3.0, unit in 0.01..100.0_f64) {
-        let given = rows(2, (5, 12), descent, &mut rng(seed));
-        let scaled = Rows::new(given.states() * unit, given.velocities() * (3.0 * unit), given.indices().to_vec()).expect("finite");
-        let of = |rows: &Rows, distance: f64| NearPasses::of(rows, distance, &mut rng(0)).expect("a distance");
-        let (a, b) = (of(&given, near), of(&scaled, near));
-        prop_assert_eq!((a.pairs, a.samples), (b.pairs, b.samples));
-        prop_assert!((a.share.unwrap_or(0.0) - b.share.unwrap_or(0.0)).abs() < 1e-9);
-        prop_assert!(of(&given, near * more).samples >= a.samples);
-    }
-}
 
 proptest! {
     /// One dimension has no direction across: whatever the numbers, they show no hidden part and do not suggest one.

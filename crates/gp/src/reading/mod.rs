@@ -2,7 +2,6 @@
 
 pub(crate) mod auto_gp;
 pub(crate) mod both;
-pub(crate) mod near_passes;
 pub(crate) mod numbers;
 
 use std::fmt;

@@ -6,6 +6,7 @@ mod auto_fit_cases;
 mod file_cases;
 mod kinematics_cases;
 mod lwpr_cases;
+mod near_passes;
 mod reading_cases;
 mod slope_cases;
 mod smoothing_cases;

@@ -3,12 +3,13 @@
 use std::path::Path;
 
 use anyhow::{Context as _, bail};
-use gp::{AutoGp, DirectBlock, DirectData, Hypothesis, NearPasses, ReadingNumbers, Rows, Shape, SlopeData};
+use gp::{AutoGp, DirectBlock, DirectData, Hypothesis, ReadingNumbers, Rows, Shape, SlopeData};
 use motion::Policy as _;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng as _;
 use serde::Deserialize;
 
+use super::near_passes::NearPasses;
 use super::slope_cases::{rows, short, view};
 use super::{Agreement, read_json};
 
@@ -126,7 +127,7 @@ pub(super) fn check_near(file: &Path) -> anyhow::Result<Vec<Agreement>> {
     for case in &cases {
         let given = rows(&case.x, &case.u, &case.trajectory)?;
         for result in &case.results {
-            let near = NearPasses::of(&given, result.delta, &mut ChaCha8Rng::seed_from_u64(0))?;
+            let near = NearPasses::of(&given, result.delta)?;
             let counts = [near.pairs, near.samples].map(|count| count as f64);
             agreements[0].compare(counts, &[result.pairs, result.samples].map(|count| count as f64));
             let share = |share: Option<f64>| share.into_iter().collect::<Vec<_>>();
