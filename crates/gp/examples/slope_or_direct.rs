@@ -29,7 +29,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let rows = FrontEnd::Velocities.rows(&recorded(on_rails)?)?;
         let learnt = AutoGp::default().fit(&rows, &mut StdRng::seed_from_u64(1))?;
         println!("movements on rails: {on_rails}; the data say {:?}", learnt.reading());
-        println!("  {}", learnt.text());
+        println!("  expected error {:.0e}; the slope GP's policy: {}", learnt.expected_nupe(), learnt.takes_slope());
         let x = dvector![0.3, -0.4];
         let (action, mut deviation) = (learnt.action(x.as_view()), dvector![0.0, 0.0]);
         learnt.action_sd_into(x.as_view(), deviation.as_view_mut());

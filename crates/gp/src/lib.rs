@@ -7,7 +7,7 @@
 //! | [`AutoGp`] | fits both and returns the one that the data support |
 //! | [`FrontEnd`] | turns demonstrations into [`Rows`] of states and velocities |
 //! | [`ConstraintEstimates`] | estimates the constraints that acted, once the policy is known |
-//! | [`TrustReport`] | warnings and numbers about a [`SlopeFit`] |
+//! | [`TrustReport`] | [doubts](Doubt) and numbers about a [`SlopeFit`] |
 //!
 //! ```
 //! use gp::{AutoGp, FrontEnd, Hypothesis};
@@ -34,7 +34,7 @@
 //! let x = dvector![0.3, -0.4];
 //! assert!((learnt.action(x.as_view()) + &x).norm() < 1e-4);
 //! assert!(learnt.slope().uncertainty(x.as_view()).trace() < 1e-4); // cov π(x)
-//! assert!(learnt.slope().report().warnings().is_empty());
+//! assert!(learnt.slope().report().doubts().is_empty());
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
@@ -55,7 +55,7 @@
 //! - **Motion that depends on more than the state** (time, a moving target) is [`Hypothesis::Unexplained`]. A quantity that is constant
 //!   during a movement, such as a goal or a load, can be context ([`Rows::with_context`]).
 //! - **Corridors**: if all movements follow one narrow path, nothing tests the policy across it.
-//! - **Kinks in many dimensions** are learnt slowly; the held-out R² is then low and [`TrustReport::warnings`] says so.
+//! - **Kinks in many dimensions** are learnt slowly; the held-out R² is then low and [`TrustReport::doubts`] says so.
 //! - **More than 1,500 rows** are thinned, because time grows with their cube ([`SlopeGp::max_rows`]). With [`SlopeGp::inducing_rows`], up
 //!   to 64 times as many rows (at most 32,000) are also used, if that predicts left-out movements better.
 //! - [`GpError`]: no motion, fewer than three usable trajectories, or too few rows.
@@ -101,6 +101,7 @@ pub use left_out::curl_test::CurlTest;
 pub use reading::Hypothesis;
 pub use reading::auto_gp::{AutoFit, AutoGp};
 pub use reading::numbers::{FreeRows, LeftOutRow, ReadingNumbers, TrajectoryErrors};
+pub use report::doubt::Doubt;
 pub use report::identifiability::{Identifiability, LeastSeen};
 pub use report::trust_report::{FamilyNumbers, FamilyReport, ModelKind, TrustReport};
 pub use rows::front_end::FrontEnd;

@@ -3,7 +3,7 @@
 use crate::drawn::{descent, matrix, rng, rows, vector};
 use demo_gen::beyond::{BeyondSystem, ConstraintKind, PolicyKind as Shown};
 use demo_gen::demonstrations;
-use gp::{AutoFit, AutoGp, CurlTest, DirectFit, DirectGp, Family, GpError, ModelKind, Rows, SlopeFit, SlopeGp};
+use gp::{AutoFit, AutoGp, CurlTest, DirectFit, DirectGp, Doubt, Family, GpError, ModelKind, Rows, SlopeFit, SlopeGp};
 use motion::{LearntPolicy, Policy, SampleIndex};
 use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
@@ -122,7 +122,8 @@ fn an_axis_that_never_moves_is_named() {
     });
     let fit = SlopeGp::default().fit(&flat, &mut rng(6)).expect("a fit");
     assert!(fit.report().least_seen.share < 1e-9 && fit.report().least_seen.direction[2].abs() > 0.99);
-    assert!(fit.warnings().iter().any(|warning| warning.contains("nothing ever moved")), "{:?}", fit.warnings());
+    let doubts = fit.report().doubts();
+    assert!(doubts.iter().any(|doubt| matches!(doubt, Doubt::NeverMoved { .. })), "{doubts:?}");
 }
 
 #[test]

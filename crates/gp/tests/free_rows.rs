@@ -65,7 +65,7 @@ proptest! {
         prop_assert_eq!(found.len(), (MOVEMENTS - constrained.len()) * SAMPLES);
         prop_assert_eq!(fit.reading(), Hypothesis::Constrained);
         prop_assert!(!fit.takes_slope() && error(&fit) < 1e-9, "{} {:?}", error(&fit), fit.numbers());
-        prop_assert!(error(&fit) <= fit.expected_nupe().max(1e-9) && fit.text().contains("move freely"), "{}", fit.text());
+        prop_assert!(error(&fit) <= fit.expected_nupe().max(1e-9), "{:?}", fit.numbers());
     }
 
     /// One constraint in most movements looks like free motion; the others contradict it, because they move across.

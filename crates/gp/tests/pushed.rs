@@ -23,7 +23,6 @@ fn pushes_do_not_spoil_the_policy() {
             assert_eq!(reading, Hypothesis::Constrained, "{} dimensions, push {push}", system.dim);
             assert!(error < most, "{} dimensions, push {push}: {error:.1e}", system.dim);
             assert!(found.is_some_and(|found| found > 0.5 * push && found < 3.0 * push), "{push}: {found:?}");
-            assert!(fit.text().contains("The constraints also pushed"), "{}", fit.text());
         }
     }
 }
@@ -79,7 +78,7 @@ fn more_pressed_movements_are_better() {
         let shown = demonstrations(&with_velocity_noise(&shown, 20.0, &mut rng).unwrap()).unwrap();
         let rows = FrontEnd::of_velocities(&shown).rows(&shown).unwrap();
         let fit = systems::learnt_with(500, &rows, 1);
-        assert!(fit.slope().report().push.is_some(), "{n_trajectories} movements: {}", fit.text());
+        assert!(fit.slope().report().push.is_some(), "{n_trajectories} movements: {:?}", fit.numbers());
         let (mut error, mut all) = (0.0, 0.0);
         for (state, action) in
             fresh.iter().flat_map(|of| of.truth.states.column_iter().zip(of.truth.actions.column_iter()))

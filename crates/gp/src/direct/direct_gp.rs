@@ -8,7 +8,8 @@ use crate::direct::data::DirectData;
 use crate::direct::model::DirectModel;
 use crate::evidence::family_fit::{FamilyFit, each_until_exact};
 use crate::kernel::family::Family;
-use crate::left_out::{LeftOutPredictions, poorly_predicted};
+use crate::left_out::LeftOutPredictions;
+use crate::report::doubt::Doubt;
 use crate::rows::kept::{Kept, Selection};
 use crate::support::only_deviation_into;
 use crate::{GpError, Rows};
@@ -129,9 +130,9 @@ impl DirectFit {
         self.z_squared
     }
 
-    /// Warnings about the policy, one sentence each.
-    pub fn doubts(&self) -> Vec<String> {
-        poorly_predicted(self.r_squared).into_iter().collect()
+    /// Reasons to doubt the policy.
+    pub fn doubts(&self) -> Vec<Doubt> {
+        Doubt::about_prediction(self.r_squared).into_iter().collect()
     }
 }
 
@@ -169,6 +170,6 @@ impl LearntPolicy for DirectFit {
     }
 
     fn warnings(&self) -> Vec<String> {
-        self.doubts()
+        self.doubts().iter().map(ToString::to_string).collect()
     }
 }

@@ -67,15 +67,6 @@ impl LeftOutPredictions {
     }
 }
 
-/// The warning about a low held-out R²; `None` for others.
-pub(crate) fn poorly_predicted(r_squared: f64) -> Option<String> {
-    match r_squared {
-        r2 if r2 < 0.5 => Some(format!("left-out movements are not predicted (R² {r2:.2}): do not use this policy")),
-        r2 if r2 < 0.9 => Some(format!("left-out movements are predicted poorly (R² {r2:.2})")),
-        _ => None,
-    }
-}
-
 /// Whether a held-out R² is so large that it does not distinguish models.
 pub(crate) fn is_nearly_exact(r_squared: f64) -> bool {
     1.0 - r_squared <= NEARLY_EXACT

@@ -198,20 +198,6 @@ impl AutoFit {
         }
     }
 
-    /// The reading as a text for the user.
-    pub fn text(&self) -> String {
-        let text = self.numbers.text_of(self.reading(), self.slope.report.expected_nupe);
-        let pushed = self.slope.report.push.filter(|&push| push > 0.0).map_or_else(String::new, |push| {
-            let percent = 100.0 * push;
-            format!(" The constraints also pushed, on average with {percent:.0} % of the policy's speed: it was learnt from the directions in which velocities differ.")
-        });
-        let text = text + &pushed;
-        match self.overridden {
-            None => text,
-            Some(reading) => format!("{text} You decided: {reading:?}."),
-        }
-    }
-
     /// Whether the returned policy is the slope GP's.
     pub fn takes_slope(&self) -> bool {
         self.numbers.takes_slope(self.overridden.unwrap_or(self.reading()))
@@ -258,9 +244,8 @@ impl LearntPolicy for AutoFit {
     }
 
     fn warnings(&self) -> Vec<String> {
-        let doubtful = matches!(self.reading(), Hypothesis::Ambiguous | Hypothesis::Unexplained | Hypothesis::TooFew);
-        let text = doubtful.then(|| self.text());
-        text.into_iter().chain(self.handed_out().warnings()).collect()
+        let doubt = self.reading().doubt().map(|doubt| doubt.to_string());
+        doubt.into_iter().chain(self.handed_out().warnings()).collect()
     }
 }
 

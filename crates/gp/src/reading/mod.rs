@@ -4,12 +4,11 @@ pub(crate) mod auto_gp;
 pub(crate) mod both;
 pub(crate) mod numbers;
 
-use std::fmt;
-
 use serde::{Deserialize, Serialize};
 
 use crate::reading::numbers::{FreeRows, ReadingNumbers};
-use crate::report::identifiability::{LeastSeen, direction};
+use crate::report::doubt::Doubt;
+use crate::report::identifiability::LeastSeen;
 use crate::rows::kept::Grouping;
 
 /// Whether hidden constraints acted on the demonstrations (R8).
@@ -26,6 +25,18 @@ pub enum Hypothesis {
     Unexplained,
     /// Too few demonstrations to decide: the direct policy.
     TooFew,
+}
+
+impl Hypothesis {
+    /// The reason to doubt the policy that this reading is, if it is one.
+    pub(crate) fn doubt(self) -> Option<Doubt> {
+        match self {
+            Hypothesis::Free | Hypothesis::Constrained => None,
+            Hypothesis::Ambiguous => Some(Doubt::AmbiguousReading),
+            Hypothesis::Unexplained => Some(Doubt::UnexplainedMovements),
+            Hypothesis::TooFew => Some(Doubt::TooFewDemonstrations),
+        }
+    }
 }
 
 /// Difference up to which the two policies count as equal, whatever was observed.
@@ -139,54 +150,5 @@ impl ReadingNumbers {
     /// Expected error of the direct policy learnt from free rows.
     pub(crate) fn error_of_free_rows(&self) -> f64 {
         self.p_d.max(self.a_d)
-    }
-
-    /// The reading as a text for the user. `expected_nupe` is the slope policy's.
-    pub fn text(&self, expected_nupe: f64) -> String {
-        self.text_of(self.reading(), expected_nupe)
-    }
-
-    /// The same for a reading that does not follow from these numbers alone.
-    pub(crate) fn text_of(&self, reading: Hypothesis, expected_nupe: f64) -> String {
-        let &ReadingNumbers { a_s, a_d, p_d, gap, hidden, .. } = self;
-        let (a_s, a_d, p_d, gap, hidden) = (Percent(a_s), Percent(a_d), Percent(p_d), Percent(gap), Percent(hidden));
-        let leans = self.trajectories < DEMONSTRATIONS && self.direction_tells() && self.hides();
-        let few = if leans { " It leans towards constraints; record at least five demonstrations." } else { "" };
-        match reading {
-            Hypothesis::Free if self.shows_a_potential() => format!(
-                "Nothing in these demonstrations points to a hidden constraint: where they went, the policies that allow for one and that do not agree within {gap}. The slope policy is used: it predicts left-out movements far better (squared error {a_s} against {a_d}), as it can where movements descend a potential. A constraint that is the same in every demonstration cannot be seen in data."
-            ),
-            Hypothesis::Free => format!(
-                "Nothing in these demonstrations points to a hidden constraint: left-out movements are predicted from the state alone with an error of {p_d} of their variance, and the policy that allows for constraints agrees within {gap}. The direct policy is used. A constraint that is the same in every demonstration cannot be seen in data."
-            ),
-            Hypothesis::Constrained if self.free.is_some() => format!(
-                "Constraints deflected only some of the movements: what the others show without constraints also predicts how far these were allowed to go (squared error {a_d}, and {a_s} from directions alone). The direct policy, learnt from the {} of the samples that move freely, is used. Expected error {:.1e}.",
-                Percent(self.free.map_or(1.0, |free| free.share)), self.error_of_free_rows()
-            ),
-            Hypothesis::Constrained => format!(
-                "Constraints hid part of the policy, and they differed: the direction in which a movement was allowed to go predicts its speed far better than the state alone (squared error {a_s} against {a_d}). The slope policy is used; about {hidden} of its length was hidden from view. Expected error {expected_nupe:.1e}."
-            ),
-            Hypothesis::Ambiguous if self.gap <= SAME || self.shows_a_potential() => format!(
-                "Hardly anything ever moved along {}: either the policy does not, or it is always blocked there.",
-                direction(&self.least_seen.direction)
-            ),
-            Hypothesis::Ambiguous => format!(
-                "Two readings explain these demonstrations equally well. (a) Nothing was constrained: then the direct policy is right (used; left-out error {p_d}). (b) The same constraint acted always: then the policy is unknown across it, and the slope policy is one guess; the two differ by {gap}. Only you know: give the reading (free or constrained), or record a few demonstrations that pass the same states in other directions.{few}"
-            ),
-            Hypothesis::Unexplained => format!(
-                "Neither reading predicts left-out movements (errors {p_d} and {a_s}). Too few demonstrations, too much noise, or the movement does not depend on the state alone (time, load, target).{} No policy should be trusted.",
-                if self.lambda >= 0.5 && !leans && !self.is_a_line() { " It leans towards constraints." } else { few }
-            ),
-            Hypothesis::TooFew => "Too few demonstrations to tell whether constraints acted: the direct policy is used; record at least five.".to_owned(),
-        }
-    }
-}
-
-struct Percent(f64);
-
-impl fmt::Display for Percent {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let percent = 100.0 * self.0;
-        if percent.abs() < 1.0 { write!(f, "{percent:.2} %") } else { write!(f, "{percent:.0} %") }
     }
 }

@@ -68,9 +68,3 @@ impl LeastSeen {
         }
     }
 }
-
-/// A direction as text.
-pub(crate) fn direction(vector: &[f64]) -> String {
-    let entries: Vec<_> = vector.iter().map(|entry| format!("{entry:.2}")).collect();
-    format!("({})", entries.join(", "))
-}

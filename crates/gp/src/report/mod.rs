@@ -1,4 +1,5 @@
-//! Reliability of a slope GP, in numbers and in words.
+//! Reliability of a slope GP, in numbers and as doubts.
 
+pub(crate) mod doubt;
 pub(crate) mod identifiability;
 pub(crate) mod trust_report;

@@ -2,8 +2,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::kernel::block::Block;
 use crate::kernel::family::Family;
-use crate::left_out::{is_nearly_exact, poorly_predicted};
-use crate::report::identifiability::{Identifiability, LeastSeen, direction};
+use crate::left_out::is_nearly_exact;
+use crate::report::doubt::Doubt;
+use crate::report::identifiability::{Identifiability, LeastSeen};
 use crate::rows::kept::{Grouping, RowsDropped};
 
 /// Reliability of a slope GP, in numbers (`docs/slope-gp.md`, section 6).
@@ -107,38 +108,21 @@ impl TrustReport {
         self.calibration.unwrap_or(self.z_squared.max(1.0))
     }
 
-    /// Warnings about the policy, one sentence each.
-    pub fn warnings(&self) -> Vec<String> {
-        let mut warnings = Vec::new();
-        warnings.extend(poorly_predicted(self.r_squared));
-        if self.z_squared > 4.0 {
-            warnings.push(format!(
-                "errors are {:.1} times those expected: the noise model is wrong",
-                self.z_squared.sqrt()
-            ));
-        }
-        if self.identifiability.warns() {
-            warnings.push(format!(
-                "the demonstrations hardly determine the policy along {} (posterior/prior variance {:.2}): it is mostly the prior there",
-                direction(&self.identifiability.direction),
-                self.identifiability.least
-            ));
-        }
-        if self.least_seen.coverage() < 1e-6 {
-            warnings.push(format!("nothing ever moved along {}", direction(&self.least_seen.direction)));
-        }
-        if self.ambiguity > 0.1 {
-            warnings.push(format!(
-                "with and without rotation the slope policy differs by {:.0} %: across the paths it is a guess",
-                100.0 * self.ambiguity
-            ));
-        }
-        if self.grouping == Grouping::BlocksOfTime {
-            warnings.push(
-                "one or two movements only: blocks of time were left out instead of movements, R² is too good"
-                    .to_owned(),
-            );
-        }
-        warnings
+    /// Reasons to doubt the policy.
+    pub fn doubts(&self) -> Vec<Doubt> {
+        let identifiability = &self.identifiability;
+        let doubts = [
+            Doubt::about_prediction(self.r_squared),
+            (self.z_squared > 4.0).then(|| Doubt::WrongNoise { factor: self.z_squared.sqrt() }),
+            identifiability.warns().then(|| Doubt::MostlyPrior {
+                direction: identifiability.direction.clone(),
+                variance: identifiability.least,
+            }),
+            (self.least_seen.coverage() < 1e-6)
+                .then(|| Doubt::NeverMoved { direction: self.least_seen.direction.clone() }),
+            (self.ambiguity > 0.1).then_some(Doubt::AmbiguousRotation { difference: self.ambiguity }),
+            (self.grouping == Grouping::BlocksOfTime).then_some(Doubt::BlocksOfTime),
+        ];
+        doubts.into_iter().flatten().collect()
     }
 }

@@ -73,7 +73,7 @@ impl SlopeFit {
         self.model.potential_difference(x, from)
     }
 
-    /// Numbers and warnings about the fit.
+    /// Numbers and doubts about the fit.
     pub fn report(&self) -> &TrustReport {
         &self.report
     }
@@ -118,6 +118,6 @@ impl LearntPolicy for SlopeFit {
     }
 
     fn warnings(&self) -> Vec<String> {
-        self.report.warnings()
+        self.report.doubts().iter().map(ToString::to_string).collect()
     }
 }
