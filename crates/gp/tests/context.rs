@@ -190,7 +190,7 @@ proptest! {
         for (row, weight) in model.weights().iter().enumerate() {
             let (z2, n2) = (scale(&rows.states().column(row).into_owned()), rows.velocities().column(row).normalize());
             for (block, theta) in blocks.iter().zip(&theta) {
-                expected += block.policy_slope(z.as_view(), z2.as_view(), n2.as_view()) * (theta.exp() * weight * data.speed());
+                expected += block.policy_slope(z.as_view(), z2.as_view(), n2.as_view()) * (theta.exp() * weight * data.unit());
             }
         }
         let action = model.policy().action(state.as_view());

@@ -165,7 +165,7 @@ impl Literal {
         for i in 0..rows.len() {
             k[(i, i)] += (theta[blocks.len()].exp() + 1e-10) * weights[i];
         }
-        let targets = rows.velocities().column_iter().map(|u| u.norm() / data.speed());
+        let targets = rows.velocities().column_iter().map(|u| u.norm() / data.unit());
         Literal { k, targets: DVector::from_iterator(rows.len(), targets) }
     }
 
@@ -193,7 +193,7 @@ impl Literal {
         });
         let solved = self.k.clone().cholesky().expect("positive definite").solve(&with_rows);
         let posterior = &prior - with_rows.tr_mul(&solved);
-        (prior * data.speed().powi(2), posterior * data.speed().powi(2))
+        (prior * data.unit().powi(2), posterior * data.unit().powi(2))
     }
 
     /// Prediction of some rows from the others, and its variance including noise.

@@ -8,7 +8,7 @@ use crate::kernel::direct_block::{DirectBlock, DirectCovariance};
 use crate::kernel::triangle::Upper;
 use crate::kernel::whitening::Whitening;
 use crate::left_out::LeftOutPredictions;
-use crate::left_out::level::Conditions;
+use crate::left_out::level::Targets;
 use crate::rows::kept::Kept;
 use crate::rows::noise_weights::{direct_weights, require_noise_weights};
 use crate::rows::scaling::Scaling;
@@ -25,11 +25,7 @@ pub struct DirectData {
     /// Scaled states and contexts z, (n + p, M).
     pub(crate) z: DMatrix<f64>,
     /// Y = u/ū, (M, n).
-    targets: DMatrix<f64>,
-    noise_weights: Vec<f64>,
-    /// Σ w|Y − Ȳ|², w = 1/D.
-    spread: f64,
-    groups: Vec<Vec<usize>>,
+    targets: Targets,
 }
 
 impl DirectData {
@@ -76,15 +72,16 @@ impl DirectData {
         noise_weights: Vec<f64>,
         groups: Vec<Vec<usize>>,
     ) -> Self {
-        let targets = velocities.transpose() / unit;
+        let values = velocities.transpose() / unit;
         let total: f64 = noise_weights.iter().map(|d| 1.0 / d).sum();
-        let mut mean = DVector::zeros(targets.ncols());
-        for (target, d) in targets.row_iter().zip(&noise_weights) {
+        let mut mean = DVector::zeros(values.ncols());
+        for (target, d) in values.row_iter().zip(&noise_weights) {
             mean += target.transpose() / (d * total);
         }
-        let each = targets.row_iter().zip(&noise_weights);
+        let each = values.row_iter().zip(&noise_weights);
         let spread = each.map(|(target, d)| (target.transpose() - &mean).norm_squared() / d).sum();
-        DirectData { z: scaling.apply(states), scaling, unit, targets, noise_weights, spread, groups }
+        let targets = Targets { values, noise_weights, groups, spread };
+        DirectData { z: scaling.apply(states), scaling, unit, targets }
     }
 
     /// μ and S: z = (x − μ)/S.
@@ -102,7 +99,7 @@ impl DirectData {
     /// # Panics
     /// If `theta` does not have one entry per block and one more.
     pub fn evidence(&self, blocks: &[DirectBlock], theta: &[f64]) -> Option<Evidence> {
-        Evidence::of(&self.covariance(blocks), theta, &self.conditions())
+        Evidence::of(&self.covariance(blocks), theta, &self.targets)
     }
 
     /// The model at θ with the noise increased by κ, and its leave-one-trajectory-out predictions (R3); `None` if the
@@ -116,21 +113,22 @@ impl DirectData {
         theta: &[f64],
         kappa: f64,
     ) -> Option<(DirectModel, LeftOutPredictions)> {
-        let fit = FamilyFit::at(&self.covariance(blocks), theta, kappa, &self.conditions())?;
+        let fit = FamilyFit::at(&self.covariance(blocks), theta, kappa, &self.targets)?;
         let left_out = fit.level.left_out.clone();
         Some((self.model(blocks.to_vec(), fit), left_out))
     }
 
     /// Determines amplitudes by the marginal likelihood on the hyper rows, noise by held-out prediction.
     pub(crate) fn fit(&self, blocks: &[DirectBlock], hyper: &[usize]) -> Option<FamilyFit> {
-        fit_family(&self.covariance(blocks), hyper, &self.conditions(), None)
+        fit_family(&self.covariance(blocks), hyper, &self.targets, None)
     }
 
     pub(crate) fn model(&self, blocks: Vec<DirectBlock>, fit: FamilyFit) -> DirectModel {
         let FamilyFit { amplitudes, level } = fit;
         let scaled = (self.scaling.clone(), self.unit);
         let weights = level.weights.transpose();
-        let whitening = Whitening::Rows { noise_weights: self.noise_weights.clone(), factor: level.factor.into() };
+        let whitening =
+            Whitening::Rows { noise_weights: self.targets.noise_weights.clone(), factor: level.factor.into() };
         DirectModel::new(scaled, (blocks, amplitudes), self.z.clone(), weights, (level.noise, whitening))
     }
 
@@ -142,7 +140,7 @@ impl DirectData {
         most: usize,
     ) -> Option<(DirectModel, LeftOutPredictions)> {
         let Induced { rows, noise, weights, factor, shrinkage, left_out, .. } =
-            Induced::new(&self.covariance(blocks), amplitudes, &self.conditions(), most)?;
+            Induced::new(&self.covariance(blocks), amplitudes, &self.targets, most)?;
         let scaled = (self.scaling.clone(), self.unit);
         let (prior, z) = ((blocks.to_vec(), amplitudes.to_vec()), self.z.select_columns(&rows));
         let whitening = Whitening::Inducing { shrinkage: Upper::new(&shrinkage), factor: factor.into() };
@@ -151,11 +149,6 @@ impl DirectData {
 
     fn covariance<'a>(&'a self, blocks: &'a [DirectBlock]) -> DirectCovariance<'a> {
         DirectCovariance { blocks, z: &self.z }
-    }
-
-    fn conditions(&self) -> Conditions<'_> {
-        let DirectData { targets, noise_weights, groups, spread, .. } = self;
-        Conditions { targets, noise_weights, groups, spread: *spread }
     }
 }
 

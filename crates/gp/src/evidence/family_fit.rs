@@ -6,7 +6,7 @@ use crate::evidence::{Task, Workspace};
 use crate::kernel::covariance::Covariance;
 use crate::kernel::family::Family;
 use crate::left_out::LeftOutPredictions;
-use crate::left_out::level::{Conditions, Level};
+use crate::left_out::level::{Level, Targets};
 
 /// A family with amplitudes from the marginal likelihood and noise increased by held-out prediction.
 #[derive(Debug)]
@@ -21,16 +21,11 @@ impl FamilyFit {
     ///
     /// # Panics
     /// If `theta` does not have one entry per block and one more.
-    pub(crate) fn at(
-        covariance: &impl Covariance,
-        theta: &[f64],
-        kappa: f64,
-        conditions: &Conditions<'_>,
-    ) -> Option<FamilyFit> {
+    pub(crate) fn at(covariance: &impl Covariance, theta: &[f64], kappa: f64, targets: &Targets) -> Option<FamilyFit> {
         let blocks = covariance.n_blocks();
         assert_eq!(theta.len(), blocks + 1, "one log amplitude a block, and the noise");
         let amplitudes: Vec<f64> = theta[..blocks].iter().map(|log| log.exp()).collect();
-        let level = Level::at(&covariance.sum(&amplitudes), theta[blocks].exp(), kappa, conditions)?;
+        let level = Level::at(&covariance.sum(&amplitudes), theta[blocks].exp(), kappa, targets)?;
         Some(FamilyFit { amplitudes, level })
     }
 }
@@ -52,10 +47,10 @@ const AT_ONCE: Limits = Limits { iterations: 40, tolerance: 1e-5 };
 pub(crate) fn fit_family(
     covariance: &impl Covariance,
     hyper: &[usize],
-    conditions: &Conditions<'_>,
+    targets: &Targets,
     second_start: Option<&[f64]>,
 ) -> Option<FamilyFit> {
-    let search = Search::new(covariance, hyper, conditions);
+    let search = Search::new(covariance, hyper, targets);
     let first = search.from(&vec![AMPLITUDE; covariance.n_blocks()]);
     let settled = first.as_ref().is_some_and(|fit| fit.level.left_out.is_nearly_exact());
     let Some(second_start) = second_start.filter(|_| !settled) else { return first };
@@ -69,21 +64,21 @@ pub(crate) fn fit_family(
 /// The search of a family, from any start.
 struct Search<'a, C> {
     covariance: &'a C,
-    conditions: &'a Conditions<'a>,
+    targets: &'a Targets,
     /// The objectives of successive searches, each with its limits.
     tasks: Vec<(Task, Limits)>,
 }
 
 impl<'a, C: Covariance> Search<'a, C> {
-    fn new(covariance: &'a C, hyper: &[usize], conditions: &'a Conditions<'a>) -> Self {
-        let among = |rows: &[usize]| Task::of(covariance, rows, conditions);
+    fn new(covariance: &'a C, hyper: &[usize], targets: &'a Targets) -> Self {
+        let among = |rows: &[usize]| Task::of(covariance, rows, targets);
         let tasks = if hyper.len() < WORTH_TWO_SEARCHES {
             vec![(among(hyper), AT_ONCE)]
         } else {
             let half: Vec<usize> = hyper.iter().step_by(2).copied().collect();
             vec![(among(&half), ON_HALF), (among(hyper), AFTER_HALF)]
         };
-        Search { covariance, conditions, tasks }
+        Search { covariance, targets, tasks }
     }
 
     /// The fit found by a search from these amplitudes, (B); `None` without a Cholesky factor.
@@ -102,7 +97,7 @@ impl<'a, C: Covariance> Search<'a, C> {
             curvature.scale(2.0);
         }
         let amplitudes: Vec<f64> = theta.iter().take(blocks).map(|log| log.exp()).collect();
-        let level = Level::best(&self.covariance.sum(&amplitudes), theta[blocks].exp(), self.conditions)?;
+        let level = Level::best(&self.covariance.sum(&amplitudes), theta[blocks].exp(), self.targets)?;
         Some(FamilyFit { amplitudes, level })
     }
 }

@@ -13,7 +13,7 @@ use nalgebra::{DMatrix, DVector};
 use pulp::{Arch, Simd, WithSimd};
 
 use crate::kernel::covariance::{Covariance, add_noise};
-use crate::left_out::level::Conditions;
+use crate::left_out::level::Targets;
 
 /// Centre −4 of the prior on each log parameter, and its strength: the last term of (S8).
 const CENTRE: f64 = -4.0;
@@ -30,9 +30,9 @@ pub struct Evidence {
 
 impl Evidence {
     /// On all rows at θ; `None` if the covariance has no Cholesky factor.
-    pub(crate) fn of(covariance: &impl Covariance, theta: &[f64], conditions: &Conditions<'_>) -> Option<Self> {
-        let all: Vec<usize> = (0..conditions.targets.nrows()).collect();
-        let task = Task::of(covariance, &all, conditions);
+    pub(crate) fn of(covariance: &impl Covariance, theta: &[f64], targets: &Targets) -> Option<Self> {
+        let all: Vec<usize> = (0..targets.values.nrows()).collect();
+        let task = Task::of(covariance, &all, targets);
         task.evidence(&DVector::from_column_slice(theta), &mut Workspace::default())
     }
 }
@@ -68,11 +68,11 @@ impl Workspace {
 
 impl Task {
     /// These rows of a covariance and of the targets.
-    pub(crate) fn of(covariance: &impl Covariance, rows: &[usize], conditions: &Conditions<'_>) -> Task {
+    pub(crate) fn of(covariance: &impl Covariance, rows: &[usize], targets: &Targets) -> Task {
         Task {
             blocks: covariance.each_among(rows),
-            noise_weights: rows.iter().map(|&row| conditions.noise_weights[row]).collect(),
-            targets: conditions.targets.select_rows(rows),
+            noise_weights: rows.iter().map(|&row| targets.noise_weights[row]).collect(),
+            targets: targets.values.select_rows(rows),
         }
     }
 

@@ -6,7 +6,7 @@ use linalg::transposed_product;
 use nalgebra::DMatrix;
 
 use crate::kernel::covariance::Covariance;
-use crate::left_out::level::Conditions;
+use crate::left_out::level::Targets;
 
 /// A prior, the inducing rows, and the data of all rows.
 #[derive(Debug)]
@@ -15,23 +15,23 @@ pub(crate) struct Features<'a, C> {
     pub(crate) amplitudes: &'a [f64],
     /// Indices of the inducing rows, (m).
     pub(crate) inducing: Vec<usize>,
-    pub(crate) conditions: &'a Conditions<'a>,
+    pub(crate) targets: &'a Targets,
 }
 
 impl<C: Covariance> Features<'_, C> {
     /// [D^{-1/2} K_nm | D^{-1/2} Y] of these rows, (n, m + c).
     pub(crate) fn with_targets(&self, rows: Range<usize>) -> DMatrix<f64> {
-        let (count, targets) = (self.inducing.len(), self.conditions.targets);
+        let (count, targets) = (self.inducing.len(), &self.targets.values);
         let rows: Vec<usize> = rows.collect();
         let mut both = DMatrix::zeros(rows.len(), count + targets.ncols());
         both.columns_mut(0, count).tr_copy_from(&self.transposed(&rows));
-        both.columns_mut(count, targets.ncols()).copy_from(&self.targets(&rows));
+        both.columns_mut(count, targets.ncols()).copy_from(&self.whitened_targets(&rows));
         both
     }
 
     /// D^{-1/2} Y of these rows, (n, c).
-    pub(crate) fn targets(&self, rows: &[usize]) -> DMatrix<f64> {
-        let mut targets = self.conditions.targets.select_rows(rows);
+    pub(crate) fn whitened_targets(&self, rows: &[usize]) -> DMatrix<f64> {
+        let mut targets = self.targets.values.select_rows(rows);
         for (mut target, &row) in targets.row_iter_mut().zip(rows) {
             target *= self.weight(row);
         }
@@ -45,7 +45,7 @@ impl<C: Covariance> Features<'_, C> {
 
     /// D^{-1/2}.
     fn weight(&self, row: usize) -> f64 {
-        1.0 / self.conditions.noise_weights[row].sqrt()
+        1.0 / self.targets.noise_weights[row].sqrt()
     }
 
     /// (D^{-1/2} K_nm)ᵀ of these rows, (m, n).

@@ -61,13 +61,13 @@ impl<C: Covariance> Leaving<'_, C> {
         let group = |(at, rows): (usize, &&[usize])| self.group(rows, products(at));
         let each: Vec<Group> = groups.rows.par_iter().enumerate().map(group).collect::<Option<_>>()?;
         let rows: Vec<usize> = groups.rows.concat();
-        let targets = self.features.conditions.targets.ncols();
+        let targets = self.features.targets.values.ncols();
         let (mut residuals, mut variances) = (DMatrix::zeros(rows.len(), targets), Vec::with_capacity(rows.len()));
         for (errors, of) in each {
             residuals.rows_mut(variances.len(), of.len()).copy_from(&errors);
             variances.extend(of);
         }
-        let weights: Vec<f64> = rows.iter().map(|&row| self.features.conditions.noise_weights[row]).collect();
+        let weights: Vec<f64> = rows.iter().map(|&row| self.features.targets.noise_weights[row]).collect();
         LeftOutPredictions::of(residuals, variances, &weights, spread)
     }
 
@@ -75,7 +75,7 @@ impl<C: Covariance> Leaving<'_, C> {
         let few = rows.len() <= self.spectrum.singular.len().min(TOGETHER);
         let (mut residuals, mut variances) = if few { self.few(rows, products) } else { self.many(rows, products) }?;
         for (at, &row) in rows.iter().enumerate() {
-            let weight = self.features.conditions.noise_weights[row];
+            let weight = self.features.targets.noise_weights[row];
             residuals.row_mut(at).scale_mut(weight.sqrt());
             variances[at] *= weight;
         }
@@ -156,7 +156,7 @@ impl<C: Covariance> Leaving<'_, C> {
     fn own(&self, rows: &[usize], products: Option<DMatrixView<'_, f64>>) -> (DMatrix<f64>, Vec<f64>, DMatrix<f64>) {
         let product = || self.features.times(rows, &self.spectrum.w);
         let mut b = products.map_or_else(product, DMatrixView::into_owned);
-        let errors = self.features.targets(rows) - &b * self.coefficients;
+        let errors = self.features.whitened_targets(rows) - &b * self.coefficients;
         let known = b.row_iter().map(|row| row.norm_squared()).collect();
         self.scale(&mut b);
         (errors, known, b)
@@ -164,7 +164,7 @@ impl<C: Covariance> Leaving<'_, C> {
 
     /// Prior variance that the inducing rows do not explain, in the scale of D^{-1/2} K_nm.
     fn unknown(&self, row: usize, known: f64) -> f64 {
-        let Features { covariance, amplitudes, conditions, .. } = self.features;
-        (covariance.variance(row, amplitudes) / conditions.noise_weights[row] - known).max(0.0)
+        let Features { covariance, amplitudes, targets, .. } = self.features;
+        (covariance.variance(row, amplitudes) / targets.noise_weights[row] - known).max(0.0)
     }
 }

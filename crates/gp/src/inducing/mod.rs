@@ -15,7 +15,7 @@ use crate::inducing::pivots::pivots;
 use crate::inducing::spectrum::Spectrum;
 use crate::kernel::covariance::{Covariance, NOISE_FLOOR, among, jittered};
 use crate::left_out::LeftOutPredictions;
-use crate::left_out::level::{Conditions, climb, kappas, raised};
+use crate::left_out::level::{Targets, climb, kappas, raised};
 use crate::rows::thinning::every_so_many;
 
 /// Approximate number of rows on which noise levels are compared; whole groups of them, at least three.
@@ -50,11 +50,11 @@ impl Induced {
     pub(crate) fn new(
         covariance: &impl Covariance,
         amplitudes: &[f64],
-        conditions: &Conditions<'_>,
+        targets: &Targets,
         most: usize,
     ) -> Option<Induced> {
-        let inducing = pivots(covariance, amplitudes, conditions.groups, most);
-        let features = Features { covariance, amplitudes, inducing, conditions };
+        let inducing = pivots(covariance, amplitudes, &targets.groups, most);
+        let features = Features { covariance, amplitudes, inducing, targets };
         let factor = Factor::new(jittered(among(covariance, &features.inducing, amplitudes)))?;
         let spectrum = Spectrum::of(&features, &factor)?;
         let found = spectrum.noise();
@@ -64,14 +64,14 @@ impl Induced {
             Leaving { features: &features, spectrum: &spectrum, noise, own, coefficients }.each(groups, spread)
         };
         let with_kappa = |kappa| raised(found, kappa) + NOISE_FLOOR;
-        let count = conditions.noise_weights.len();
-        let all: Vec<&[usize]> = conditions.groups.iter().map(Vec::as_slice).collect();
+        let count = targets.noise_weights.len();
+        let all: Vec<&[usize]> = targets.groups.iter().map(Vec::as_slice).collect();
         let some = Groups::new(evenly(&all, COMPARED));
         let some = if some.len() <= AT_HAND { some.with_products(&features, &spectrum) } else { some };
         let share = some.len() as f64 / count as f64;
         let at = |kappa| {
             let noise = with_kappa(kappa);
-            Some((kappa, level(noise, noise, &some, share * conditions.spread)?))
+            Some((kappa, level(noise, noise, &some, share * targets.spread)?))
         };
         // If a group is the only one that determines some direction nearly exactly, rounding leaves no prediction without it.
         let mut levels = kappas().map(at).skip_while(Option::is_none).peekable();
@@ -79,7 +79,7 @@ impl Induced {
         let (best, compared) = climb(|_| levels.next().flatten(), |(_, left_out)| left_out)?;
         let known = with_kappa(best) == own && some.len() == count;
         let every = if some.len() == count { some } else { Groups::new(all) };
-        let left_out = if known { compared } else { level(with_kappa(best), own, &every, conditions.spread)? };
+        let left_out = if known { compared } else { level(with_kappa(best), own, &every, targets.spread)? };
         let left_out = left_out.at(&every.rows.concat());
         // If the least noise at which groups can be left out is the best, less noise would be as good.
         let kappa = if best == least { 1.0 } else { best };
@@ -153,9 +153,10 @@ mod tests {
             (of(raised(induced.noise, induced.kappa)), of(induced.noise))
         }
 
-        fn conditions(&self) -> Conditions<'_> {
+        fn targets(&self) -> Targets {
             let Drawn { targets, noise_weights, groups, .. } = self;
-            Conditions { targets, noise_weights, groups, spread: 1.0 }
+            let (values, noise_weights, groups) = (targets.clone(), noise_weights.clone(), groups.clone());
+            Targets { values, noise_weights, groups, spread: 1.0 }
         }
     }
 
@@ -196,12 +197,12 @@ mod tests {
             seed in any::<u64>(),
         ) {
             let drawn = Drawn::new(&groups, seed);
-            let (covariance, conditions) = (drawn.covariance(), drawn.conditions());
+            let (covariance, targets) = (drawn.covariance(), drawn.targets());
             let count = drawn.noise_weights.len();
-            let induced = Induced::new(&covariance, &amplitudes, &conditions, count).expect("a factor");
+            let induced = Induced::new(&covariance, &amplitudes, &targets, count).expect("a factor");
             prop_assume!(induced.noise > NOISY);
             let matrix = covariance.sum(&amplitudes);
-            let exact = Level::at(&matrix, induced.noise, induced.kappa, &conditions).expect("a factor");
+            let exact = Level::at(&matrix, induced.noise, induced.kappa, &targets).expect("a factor");
             let with_all = select(&full(&matrix), &(0..count).collect::<Vec<_>>(), &induced.rows);
             let (mean, literal) = (&with_all * &induced.weights, full(&matrix) * &exact.weights);
             prop_assert!(differ(&mean, &literal) < 1e-6, "{}", differ(&mean, &literal));
@@ -225,9 +226,9 @@ mod tests {
             seed in any::<u64>(),
         ) {
             let drawn = Drawn::new(&groups, seed);
-            let (covariance, conditions) = (drawn.covariance(), drawn.conditions());
+            let (covariance, targets) = (drawn.covariance(), drawn.targets());
             let count = drawn.noise_weights.len();
-            let induced = Induced::new(&covariance, &amplitudes, &conditions, most).expect("a factor");
+            let induced = Induced::new(&covariance, &amplitudes, &targets, most).expect("a factor");
             prop_assume!(induced.noise > NOISY);
             let all: Vec<usize> = (0..count).collect();
             let prior = full(&covariance.sum(&amplitudes));
@@ -262,9 +263,9 @@ mod tests {
             seed in any::<u64>(),
         ) {
             let drawn = Drawn::new(&groups, seed);
-            let (covariance, conditions) = (drawn.covariance(), drawn.conditions());
+            let (covariance, targets) = (drawn.covariance(), drawn.targets());
             let inducing = pivots(&covariance, &amplitudes, &drawn.groups, most);
-            let features = Features { covariance: &covariance, amplitudes: &amplitudes, inducing, conditions: &conditions };
+            let features = Features { covariance: &covariance, amplitudes: &amplitudes, inducing, targets: &targets };
             let factor = Factor::new(jittered(among(&covariance, &features.inducing, &amplitudes))).expect("a factor");
             let spectrum = Spectrum::of(&features, &factor).expect("a decomposition");
             let prior = full(&covariance.sum(&amplitudes));

@@ -30,7 +30,7 @@ pub(crate) struct Spectrum {
 impl Spectrum {
     /// Costs 2 n m² operations. `None` if the singular value decomposition fails.
     pub(crate) fn of<C: Covariance>(features: &Features<'_, C>, lower: &Factor) -> Option<Spectrum> {
-        let (count, targets) = (features.inducing.len(), features.conditions.targets);
+        let (count, targets) = (features.inducing.len(), &features.targets.values);
         let columns = count + targets.ncols();
         let all = triangle(targets.nrows(), columns, &|rows| features.with_targets(rows));
         // R of Φ is R of K_nm times L⁻ᵀ; its transpose solves L Xᵀ = Rᵀ.

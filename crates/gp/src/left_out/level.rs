@@ -8,16 +8,16 @@ use nalgebra::DMatrix;
 use crate::kernel::covariance::{NOISE_FLOOR, add_noise};
 use crate::left_out::{LeftOutPredictions, left_out};
 
-/// Training data of a model.
-#[derive(Debug)]
-pub(crate) struct Conditions<'a> {
+/// What a model predicts at its rows.
+#[derive(Debug, Clone)]
+pub(crate) struct Targets {
     /// y, (M, c), scaled.
-    pub(crate) targets: &'a DMatrix<f64>,
+    pub(crate) values: DMatrix<f64>,
     /// D, (M).
-    pub(crate) noise_weights: &'a [f64],
+    pub(crate) noise_weights: Vec<f64>,
     /// Rows of each trajectory.
-    pub(crate) groups: &'a [Vec<usize>],
-    /// Σ w|y|², the reference of R².
+    pub(crate) groups: Vec<Vec<usize>>,
+    /// Σ w|y|², with w = 1/D, about the prediction without a model: the reference of R².
     pub(crate) spread: f64,
 }
 
@@ -48,9 +48,9 @@ pub(crate) fn raised(noise: f64, kappa: f64) -> f64 {
 
 impl Level {
     /// The model with noise κ(σ² + 1e-10), given Σ a_b K_b; `None` without a Cholesky factor.
-    pub(crate) fn at(covariance: &DMatrix<f64>, found: f64, kappa: f64, conditions: &Conditions<'_>) -> Option<Self> {
+    pub(crate) fn at(covariance: &DMatrix<f64>, found: f64, kappa: f64, targets: &Targets) -> Option<Self> {
         let mut inverse = DMatrix::zeros(covariance.nrows(), covariance.nrows());
-        Level::reusing((covariance.clone(), &mut inverse), found, kappa, conditions)
+        Level::reusing((covariance.clone(), &mut inverse), found, kappa, targets)
     }
 
     /// The same, given Σ a_b K_b, which becomes the factor, and a matrix of that size for L⁻¹ that is zero above the diagonal.
@@ -58,28 +58,28 @@ impl Level {
         (mut matrix, inverse): (DMatrix<f64>, &mut DMatrix<f64>),
         found: f64,
         kappa: f64,
-        conditions: &Conditions<'_>,
+        targets: &Targets,
     ) -> Option<Self> {
         let noise = raised(found, kappa);
-        add_noise(&mut matrix, noise, conditions.noise_weights.iter().copied());
+        add_noise(&mut matrix, noise, targets.noise_weights.iter().copied());
         let factor = Factor::new(matrix)?;
-        let mut weights = conditions.targets.clone();
+        let mut weights = targets.values.clone();
         factor.solve(&mut weights);
-        let &Conditions { groups, noise_weights, spread, .. } = conditions;
+        let Targets { groups, noise_weights, spread, .. } = targets;
         factor.inverse_triangle_into(inverse);
-        let left_out = left_out(inverse, &weights, groups, noise_weights, spread)?;
+        let left_out = left_out(inverse, &weights, groups, noise_weights, *spread)?;
         Some(Level { kappa, found, noise, factor, weights, left_out })
     }
 
     /// The best κ, given Σ a_b K_b and the σ² found.
-    pub(crate) fn best(covariance: &DMatrix<f64>, found: f64, conditions: &Conditions<'_>) -> Option<Self> {
+    pub(crate) fn best(covariance: &DMatrix<f64>, found: f64, targets: &Targets) -> Option<Self> {
         let zeros = || DMatrix::zeros(covariance.nrows(), covariance.ncols());
         let (mut inverse, mut kappas) = (zeros(), kappas());
         let next = |worse: Option<Level>| {
             // Matrices of many rows take less time to fill than to allocate.
             let mut matrix = worse.map_or_else(zeros, |level| level.factor.into_matrix());
             matrix.copy_from(covariance);
-            Level::reusing((matrix, &mut inverse), found, kappas.next()?, conditions)
+            Level::reusing((matrix, &mut inverse), found, kappas.next()?, targets)
         };
         climb(next, |level| &level.left_out)
     }

@@ -112,8 +112,9 @@ impl Compared<'_> {
     /// E^s_T, E^d_T and R_T of (R7).
     pub(crate) fn errors(&self) -> Vec<TrajectoryErrors> {
         let &Compared { speeds, indices, data, .. } = self;
-        let mean_weight = data.noise_weights.iter().map(|d| 1.0 / d).sum::<f64>() / data.noise_weights.len() as f64;
-        let weight = |row: usize| 1.0 / (data.noise_weights[row] * mean_weight);
+        let mean_weight =
+            data.targets.noise_weights.iter().map(|d| 1.0 / d).sum::<f64>() / data.targets.noise_weights.len() as f64;
+        let weight = |row: usize| 1.0 / (data.targets.noise_weights[row] * mean_weight);
         let errors = |(group, rows): (usize, &Vec<usize>)| {
             let power = |of: &dyn Fn(usize) -> f64| rows.iter().map(|&row| weight(row) * of(row).powi(2)).sum::<f64>();
             let seen = power(&|row| speeds[row]);
@@ -127,7 +128,7 @@ impl Compared<'_> {
                 seen,
             }
         };
-        data.groups.iter().enumerate().map(errors).collect()
+        data.targets.groups.iter().enumerate().map(errors).collect()
     }
 
     /// Predictions of every row.
@@ -152,7 +153,7 @@ impl Compared<'_> {
 
     /// e^s of (R7).
     fn slope_residual(&self, row: usize) -> f64 {
-        self.data.speed * self.slope.0.residuals[(row, 0)]
+        self.data.unit * self.slope.0.residuals[(row, 0)]
     }
 
     /// e^d of (R7).
@@ -204,7 +205,7 @@ impl ReadingNumbers {
             gap: difference(slope.1, direct.1),
             least_seen: LeastSeen::of(&data.n),
             hidden: (1.0 - seen / slope.1.norm_squared()).max(0.0),
-            trajectories: data.groups.len(),
+            trajectories: data.targets.groups.len(),
             grouping,
             free: compared.free(),
         }

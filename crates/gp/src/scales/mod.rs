@@ -15,6 +15,7 @@ use crate::evidence::family_fit::FamilyFit;
 use crate::kernel::block::Block;
 use crate::left_out::LeftOutPredictions;
 use crate::left_out::comparison::{DIFFERS, difference, much_better};
+use crate::left_out::level::Targets;
 use crate::rows::kept::{Kept, Selection, rescaled, spreads};
 use crate::slope::data::SlopeData;
 use crate::slope::push_test::PushTest;
@@ -89,11 +90,11 @@ impl Round {
 
     /// Left-out squared error of each trajectory, at most that of predicting nothing, as a share of the total to predict.
     fn shares(&self) -> Vec<f64> {
-        let SlopeData { targets, noise_weights, groups, .. } = &self.data;
+        let Targets { values, noise_weights, groups, .. } = &self.data.targets;
         let weighed = |of: &DMatrix<f64>, rows: &[usize]| -> f64 {
             rows.iter().map(|&row| of[(row, 0)].powi(2) / noise_weights[row]).sum()
         };
-        let all: Vec<f64> = groups.iter().map(|rows| weighed(targets, rows)).collect();
+        let all: Vec<f64> = groups.iter().map(|rows| weighed(values, rows)).collect();
         let errors = groups.iter().map(|rows| weighed(&self.left_out().residuals, rows));
         let everything: f64 = all.iter().sum();
         errors.zip(&all).map(|(error, all)| error.min(*all) / everything).collect()

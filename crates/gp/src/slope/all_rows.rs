@@ -72,7 +72,7 @@ pub(crate) fn on_all_rows(
     if !noisy && more.rows.len() + beyond <= MANY * kept.rows.len() {
         return None;
     }
-    let judge = Judge { weights: &thinned.data.noise_weights, rows: &kept.rows };
+    let judge = Judge { weights: &thinned.data.targets.noise_weights, rows: &kept.rows };
     let error = |tried: &OnAllRows| judge.error(&tried.kept, &tried.outcome.data, &tried.outcome.taken);
     let exact = if gp.max_rows < EXACT { exact(gp, &more, thinned, &judge) } else { None };
     let thinned_error = judge.error(kept, &thinned.data, &thinned.taken);
@@ -123,7 +123,7 @@ impl Judge<'_> {
     fn error(&self, all: &Kept, data: &SlopeData, of: &Candidate) -> f64 {
         let places = positions(&all.rows, self.rows);
         let each = places.into_iter().zip(self.weights);
-        each.map(|(at, weight)| (data.speed * of.left_out.residuals[(at, 0)]).powi(2) / weight).sum()
+        each.map(|(at, weight)| (data.unit * of.left_out.residuals[(at, 0)]).powi(2) / weight).sum()
     }
 }
 
@@ -192,7 +192,7 @@ fn compared(
     families.extend(rotating);
     let (taken, other, curl_t) = match (potential, rotation) {
         (Some(potential), Some(rotation)) => {
-            let t = curl_t(&potential.left_out, &rotation.left_out, &data.noise_weights, &data.groups);
+            let t = curl_t(&potential.left_out, &rotation.left_out, &data.targets.noise_weights, &data.targets.groups);
             let rotates = takes_rotation(t, &potential.contender(), &rotation.contender());
             let (taken, other) = if rotates { (rotation, potential) } else { (potential, rotation) };
             (taken, Some(other), Some(t))
@@ -218,7 +218,7 @@ fn noise_weights(all: &Kept, before: &Outcome) -> Vec<f64> {
         || before.taken.model.actions(&all.states).column_iter().map(|action| action.norm()).collect::<Vec<_>>();
     match &all.variances {
         Some(variances) => slope_weights(variances, &all.speeds, &lengths()),
-        None if before.data.noise_weights.iter().any(|&weight| weight != 1.0) => {
+        None if before.data.targets.noise_weights.iter().any(|&weight| weight != 1.0) => {
             certain_weights(&all.speeds, &lengths())
         }
         None => vec![1.0; all.speeds.len()],

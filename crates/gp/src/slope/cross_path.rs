@@ -29,7 +29,7 @@ impl CrossPathEvidence {
     pub(crate) fn of_neighbours(data: &SlopeData) -> CrossPathEvidence {
         let (dim, count) = data.n.shape();
         let mut group = vec![0; count];
-        for (at, rows) in data.groups.iter().enumerate() {
+        for (at, rows) in data.targets.groups.iter().enumerate() {
             for &row in rows {
                 group[row] = at;
             }
@@ -37,14 +37,15 @@ impl CrossPathEvidence {
         let places = data.z.nrows();
         let place = |row: usize| &data.z.as_slice()[row * places..(row + 1) * places];
         let squared = |a: usize, b: usize| place(a).iter().zip(place(b)).map(|(a, b)| (a - b).powi(2)).sum::<f64>();
-        let successive = data.groups.iter().flat_map(|rows| rows.windows(2).map(|pair| squared(pair[0], pair[1])));
+        let successive =
+            data.targets.groups.iter().flat_map(|rows| rows.windows(2).map(|pair| squared(pair[0], pair[1])));
         let usual = upper_median(successive.filter(|&distance| distance > 0.0).collect()).unwrap_or(0.0);
         let turned = |row: usize| {
             let others = (0..count).filter(|&other| group[other] != group[row]);
             let nearest = others.map(|other| (squared(other, row), other)).min_by(|(a, _), (b, _)| a.total_cmp(b));
             let near = nearest.filter(|&(distance, _)| distance <= NEAR.powi(2) * usual);
             let apart = |(_, other): (f64, usize)| 1.0 - data.n.column(row).dot(&data.n.column(other)).powi(2);
-            (near.map_or(0.0, apart), 1.0 / data.noise_weights[row])
+            (near.map_or(0.0, apart), 1.0 / data.targets.noise_weights[row])
         };
         let turned = every_so_many(count, ROWS).into_iter().map(turned);
         let (sum, weights) =

@@ -45,7 +45,8 @@ pub(crate) fn report(chosen: &ReportInput<'_>) -> TrustReport {
     let CovariancesAtRows { traces, posterior, prior } = covariances_at_rows(taken, kept, data);
     let ambiguity = other.as_ref().map_or(0.0, |other| ambiguity(taken, other));
     let noise = noise(data, taken);
-    let common = common_error(&taken.left_out, &data.n, (taken.model.noise, &data.noise_weights), &data.groups);
+    let common =
+        common_error(&taken.left_out, &data.n, (taken.model.noise, &data.targets.noise_weights), &data.targets.groups);
     let least_seen = LeastSeen::of(&data.n);
     let blind = kept.grouping == Grouping::BlocksOfTime || least_seen.coverage() < LeastSeen::COVERED;
     let across = if blind { CrossPathEvidence::Untested } else { *across };
@@ -85,7 +86,7 @@ pub(crate) fn report(chosen: &ReportInput<'_>) -> TrustReport {
 fn on_new_movements(data: &SlopeData, taken: &Candidate, noise: &[f64]) -> f64 {
     let along = |row: usize| (taken.left_out.variances[row] - noise[row]).max(0.0);
     let rows = 0..noise.len();
-    data.n.nrows() as f64 * data.speed.powi(2) * of_movements(rows.map(|row| (row, along(row))), data)
+    data.n.nrows() as f64 * data.unit.powi(2) * of_movements(rows.map(|row| (row, along(row))), data)
 }
 
 /// Expected z² (S11) on new movements (S43).
@@ -104,20 +105,20 @@ fn of_movements(numbers: impl Iterator<Item = (usize, f64)>, data: &SlopeData) -
         let count = numbers.len() as f64;
         (count > 0.0).then(|| (numbers.iter().sum::<f64>() / count, count))
     };
-    let (means, counts): (Vec<f64>, Vec<f64>) = data.groups.iter().filter_map(of_group).unzip();
+    let (means, counts): (Vec<f64>, Vec<f64>) = data.targets.groups.iter().filter_map(of_group).unzip();
     typical_mean(&means, &counts)
 }
 
 /// Noise variance of each row in the model, including the floor, (M), scaled.
 fn noise(data: &SlopeData, taken: &Candidate) -> Vec<f64> {
-    data.noise_weights.iter().map(|weight| (taken.model.noise + NOISE_FLOOR) * weight).collect()
+    data.targets.noise_weights.iter().map(|weight| (taken.model.noise + NOISE_FLOOR) * weight).collect()
 }
 
 /// Share of noise in the predictive variance of left-out movements, with the weights of (S11).
 fn noise_share(data: &SlopeData, taken: &Candidate) -> f64 {
-    let each = taken.left_out.variances.iter().zip(&data.noise_weights);
+    let each = taken.left_out.variances.iter().zip(&data.targets.noise_weights);
     let predicted: f64 = each.map(|(variance, weight)| variance / weight).sum();
-    taken.model.noise * data.noise_weights.len() as f64 / predicted
+    taken.model.noise * data.targets.noise_weights.len() as f64 / predicted
 }
 
 /// γ of (S19): factor on the posterior variance, determined by the errors on left-out movements: z² (S11), and `common`, the part that

@@ -65,9 +65,9 @@ fn compared(
     (potential, rotation): (Option<Candidate>, Candidate),
     mut families: Vec<FamilyReport>,
 ) -> Result<Outcome, GpError> {
-    let t = potential
-        .as_ref()
-        .map(|potential| curl_t(&potential.left_out, &rotation.left_out, &data.noise_weights, &data.groups));
+    let t = potential.as_ref().map(|potential| {
+        curl_t(&potential.left_out, &rotation.left_out, &data.targets.noise_weights, &data.targets.groups)
+    });
     let rotates = match (&potential, t) {
         (Some(potential), Some(t)) => takes_rotation(t, &potential.contender(), &rotation.contender()),
         _ => true,
@@ -129,10 +129,10 @@ fn weighed(gp: &SlopeGp, kept: &Kept, alike: &Outcome) -> Result<Option<Outcome>
 /// t of (S18): the certainty that a model with weights predicts left-out movements better.
 fn gain_t(kept: &Kept, alike: &Outcome, (data, weighed): (&SlopeData, &Candidate)) -> f64 {
     let errors = |data: &SlopeData, candidate: &Candidate| -> Vec<f64> {
-        candidate.left_out.residuals.iter().map(|residual| data.speed * residual).collect()
+        candidate.left_out.residuals.iter().map(|residual| data.unit * residual).collect()
     };
     let both = (errors(&alike.data, &alike.taken), errors(data, weighed));
-    weights_t((&both.0, &both.1), &kept.speeds, &data.noise_weights, &data.groups)
+    weights_t((&both.0, &both.1), &kept.speeds, &data.targets.noise_weights, &data.targets.groups)
 }
 
 /// Steps 3 and 4: noise weights, first from a guess of the policy's length, then from a pilot policy.

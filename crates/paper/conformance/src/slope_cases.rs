@@ -227,7 +227,7 @@ impl GivenRows {
         let data = SlopeData::new(&rows, self.d_weights.clone())?;
         let (mean, scale) = data.scaling();
         scaling.compare(mean.iter().copied(), &self.mean);
-        scaling.compare([scale, data.speed()], &[self.scale, self.r_bar]);
+        scaling.compare([scale, data.unit()], &[self.scale, self.r_bar]);
         Ok(data)
     }
 }

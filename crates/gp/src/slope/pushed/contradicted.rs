@@ -74,7 +74,7 @@ impl Pushed {
             .map(|row| some.speeds[row] - some.velocities.column(row).dot(&actions.column(row)) / some.speeds[row])
             .collect();
         for (at, place) in positions(&some.rows, &kept.rows).into_iter().enumerate() {
-            residuals[place] = data.speed * taken.left_out.residuals[(at, 0)];
+            residuals[place] = data.unit * taken.left_out.residuals[(at, 0)];
         }
         let weights = some.of_stretches.as_ref().map(|of| &of.weights);
         let mut sums = vec![(0.0, 0_usize); stretches.all.len()];

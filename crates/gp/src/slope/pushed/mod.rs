@@ -184,16 +184,17 @@ impl Pushed {
     pub(crate) fn shares(&self, trajectories: &[usize]) -> Vec<f64> {
         let Outcome { data, taken, .. } = &self.outcome;
         let weighed = |rows: &[usize], of: &dyn Fn(usize) -> f64| -> f64 {
-            rows.iter().map(|&row| of(row).powi(2) / data.noise_weights[row]).sum()
+            rows.iter().map(|&row| of(row).powi(2) / data.targets.noise_weights[row]).sum()
         };
         let of_sample = self.kept.of_stretches.as_ref().map_or(1.0, |of| of.of_sample);
         let share = |rows: &[usize]| {
             let error = weighed(rows, &|row| taken.left_out.residuals[(row, 0)]);
-            (error / (of_sample * weighed(rows, &|row| data.targets[(row, 0)]))).min(1.0)
+            (error / (of_sample * weighed(rows, &|row| data.targets.values[(row, 0)]))).min(1.0)
         };
-        let all = share(&data.groups.concat());
+        let all = share(&data.targets.groups.concat());
         let own = self.kept.trajectories();
-        let of = |trajectory: &usize| own.binary_search(trajectory).map_or(all, |group| share(&data.groups[group]));
+        let of =
+            |trajectory: &usize| own.binary_search(trajectory).map_or(all, |group| share(&data.targets.groups[group]));
         trajectories.iter().map(of).collect()
     }
 }
