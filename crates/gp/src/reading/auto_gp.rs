@@ -75,22 +75,22 @@ impl AutoGp {
         let look = self.free_rows && self.reading.is_none();
         let few = if look { few.with_free_rows(&self.direct_families) } else { few };
         // Free rows that explain the others leave no push to explain.
-        let free = few.freely.is_some() || few.compared(None).0.agree_on_free_movement();
+        let free = few.freely.is_some() || few.compare_predictions(None).0.agree_on_free_movement();
         let pushed = if free { None } else { pushed(&self.slope, rows, &few.kept, &few.slope) };
         // If the directions of stretches are not informative, nothing pushed.
-        let telling = pushed.filter(|pushed| few.compared(Some(pushed)).0.stretches_tell());
+        let telling = pushed.filter(|pushed| few.compare_predictions(Some(pushed)).0.stretches_tell());
         let (both, pushed) = match telling.map(|pushed| pushed.on_all_rows(rows)) {
             Some(pushed) if pushed.pushes() => (few, Some(pushed)),
             pushed => {
                 let all = few.on_all_rows(&self.slope, rows);
                 let better = pushed.filter(|pushed| {
-                    let tells = all.compared(Some(pushed)).0.stretches_tell();
+                    let tells = all.compare_predictions(Some(pushed)).0.stretches_tell();
                     tells && pushed.expects_less(rows, &all.slope, &all.kept)
                 });
                 (all, better)
             }
         };
-        let (numbers, left_out) = both.compared(pushed.as_ref());
+        let (numbers, left_out) = both.compare_predictions(pushed.as_ref());
         let reading = if pushed.is_some() { Hypothesis::Constrained } else { numbers.reading() };
         let Both { kept, slope, direct, freely } = both;
         let (slope, kept) = match pushed {

@@ -35,7 +35,7 @@ impl Both {
 
     /// Drops the direct GP of the free rows if the constrained rows contradict it.
     fn freely_if_it_explains_all(mut self) -> Both {
-        if self.freely.is_some() && !self.compared(None).0.free_rows_explain_all() {
+        if self.freely.is_some() && !self.compare_predictions(None).0.free_rows_explain_all() {
             self.freely = None;
         }
         self
@@ -56,7 +56,7 @@ impl Both {
 
     /// Compares their predictions of left-out trajectories on these rows, with the slope GP of `pushed`, if any, in place of
     /// their own.
-    pub(crate) fn compared(&self, pushed: Option<&Pushed>) -> (ReadingNumbers, LeftOutErrors) {
+    pub(crate) fn compare_predictions(&self, pushed: Option<&Pushed>) -> (ReadingNumbers, LeftOutErrors) {
         let Both { kept, slope, direct, freely } = self;
         let direct = freely.as_ref().map_or(direct, |freely| &freely.direct);
         let actions = pushed.map(|pushed| pushed.outcome.taken.model.actions(&kept.states));
@@ -74,6 +74,6 @@ impl Both {
             shares: shares.as_deref(),
         };
         let errors = LeftOutErrors { trajectories: compared.errors(), rows: compared.rows() };
-        (ReadingNumbers::compared(&compared), errors)
+        (ReadingNumbers::from_comparison(&compared), errors)
     }
 }

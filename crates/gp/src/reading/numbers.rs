@@ -171,7 +171,7 @@ impl ReadingNumbers {
         (direct, direct_left_out): (&DirectModel, &LeftOutPredictions),
     ) -> Self {
         let speeds: Vec<f64> = rows.velocities().column_iter().map(|velocity| velocity.norm()).collect();
-        Self::compared(&Compared {
+        Self::from_comparison(&Compared {
             speeds: &speeds,
             grouping: Grouping::Trajectories,
             indices: rows.indices(),
@@ -184,7 +184,7 @@ impl ReadingNumbers {
         })
     }
 
-    pub(crate) fn compared(compared: &Compared<'_>) -> Self {
+    pub(crate) fn from_comparison(compared: &Compared<'_>) -> Self {
         let &Compared { speeds, grouping, data, slope, direct, .. } = compared;
         let errors = compared.errors();
         let each = |of: fn(&TrajectoryErrors) -> f64| -> Vec<f64> { errors.iter().map(of).collect() };

@@ -149,7 +149,7 @@ fn exact(gp: &SlopeGp, more: &Kept, thinned: &Outcome, judge: &Judge<'_>) -> Opt
         let known = if of == before { anew.take() } else { None };
         known.or_else(|| candidate(gp, data, kept, of.0, of.1))
     };
-    compared((kept, data), (thinned, NEARLY), fit, |_, _, _| true)
+    refit_nearly_best((kept, data), (thinned, NEARLY), fit, |_, _, _| true)
 }
 
 /// Models of these rows through at most `most` inducing rows, with the families that were nearly the best before; `None` if the best model
@@ -162,12 +162,12 @@ fn induced(
 ) -> Option<OnAllRows> {
     let data = before.data.of_others(&all, noise_weights(&all, before));
     let fit = |data: &SlopeData, all: &Kept, of, prior: &_| Candidate::induced(data, all, of, prior, most);
-    compared((all, data), (before, nearly), fit, worth)
+    refit_nearly_best((all, data), (before, nearly), fit, worth)
 }
 
 /// Steps 6 and 7 on other rows, with the families that were nearly the best before; `None` if the best model of the previously selected
 /// kind is not `worth` trying the other kind.
-fn compared(
+fn refit_nearly_best(
     (kept, data): (Kept, SlopeData),
     (before, nearly): (&Outcome, f64),
     mut fit: impl FnMut(&SlopeData, &Kept, (Family, ModelKind), &[(Block, f64)]) -> Option<Candidate>,

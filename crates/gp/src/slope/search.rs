@@ -35,15 +35,15 @@ pub(crate) struct Outcome {
 
 /// The search: steps 3 to 8, and step 9, which weights certain velocities if they are not predicted nearly exactly.
 pub(crate) fn outcome(gp: &SlopeGp, kept: &Kept) -> Result<Outcome, GpError> {
-    let alike = searched(gp, kept, weighted(gp, kept)?)?;
+    let alike = search_with_weights(gp, kept, data_with_noise_weights(gp, kept)?)?;
     if kept.variances.is_some() || kept.of_stretches.is_some() || alike.taken.left_out.is_nearly_exact() {
         return Ok(alike);
     }
-    Ok(weighed(gp, kept, &alike)?.unwrap_or(alike))
+    Ok(search_with_speed_weights(gp, kept, &alike)?.unwrap_or(alike))
 }
 
 /// Steps 5 to 8 with given noise weights.
-fn searched(gp: &SlopeGp, kept: &Kept, data: SlopeData) -> Result<Outcome, GpError> {
+fn search_with_weights(gp: &SlopeGp, kept: &Kept, data: SlopeData) -> Result<Outcome, GpError> {
     let mut families = Vec::new();
     let tried = each_until_exact(
         &gp.families,
@@ -54,11 +54,11 @@ fn searched(gp: &SlopeGp, kept: &Kept, data: SlopeData) -> Result<Outcome, GpErr
     let Some(rotation) = rotation(gp, &data, kept, &potential, &mut families) else {
         return Ok(Outcome { data, taken: potential, other: None, curl_t: None, families, least_hidden: false });
     };
-    compared(gp, kept, data, (Some(potential), rotation), families)
+    choose_rotation(gp, kept, data, (Some(potential), rotation), families)
 }
 
 /// Steps 7 and 8 for the best models with a potential, if any, and with rotation.
-fn compared(
+fn choose_rotation(
     gp: &SlopeGp,
     kept: &Kept,
     data: SlopeData,
@@ -86,7 +86,7 @@ fn compared(
 
 /// The search on more rows of stretches than `fewer`, restricted to the models that were nearly the best there.
 pub(crate) fn outcome_of_nearly_best(gp: &SlopeGp, kept: &Kept, fewer: &Outcome) -> Result<Outcome, GpError> {
-    let data = weighted(gp, kept)?;
+    let data = data_with_noise_weights(gp, kept)?;
     let nearly_best = nearly_best(fewer.families.iter(), NEARLY);
     let mut families = Vec::new();
     let mut best = |kind| {
@@ -97,7 +97,7 @@ pub(crate) fn outcome_of_nearly_best(gp: &SlopeGp, kept: &Kept, fewer: &Outcome)
         best_of(tried.collect::<Vec<_>>().into_iter(), kind, &mut families)
     };
     match (best(ModelKind::Potential), best(ModelKind::Helmholtz)) {
-        (potential, Some(rotation)) => compared(gp, kept, data, (potential, rotation), families),
+        (potential, Some(rotation)) => choose_rotation(gp, kept, data, (potential, rotation), families),
         (Some(taken), None) => Ok(Outcome { data, taken, other: None, curl_t: None, families, least_hidden: false }),
         (None, None) => Err(GpError::NoFactor),
     }
@@ -115,14 +115,14 @@ pub(super) fn nearly_best<'a>(
 
 /// Step 9: repeats the search with the weights (S18) of a pilot policy, which is itself fitted with the weights from the
 /// selected model; `None` if that does not predict better, or if the pilot already predicts clearly worse.
-fn weighed(gp: &SlopeGp, kept: &Kept, alike: &Outcome) -> Result<Option<Outcome>, GpError> {
+fn search_with_speed_weights(gp: &SlopeGp, kept: &Kept, alike: &Outcome) -> Result<Option<Outcome>, GpError> {
     let weighed_by = |lengths: &[f64]| SlopeData::from_kept(kept, certain_weights(&kept.speeds, lengths));
     let data = weighed_by(&alike.taken.lengths())?;
     let Some(pilot) = candidate(gp, &data, kept, alike.taken.family, alike.taken.kind) else { return Ok(None) };
     if weights_cost(gain_t(kept, alike, (&data, &pilot))) {
         return Ok(None);
     }
-    let weighed = searched(gp, kept, weighed_by(&pilot.lengths())?)?;
+    let weighed = search_with_weights(gp, kept, weighed_by(&pilot.lengths())?)?;
     Ok(weights_pay(gain_t(kept, alike, (&weighed.data, &weighed.taken))).then_some(weighed))
 }
 
@@ -136,7 +136,7 @@ fn gain_t(kept: &Kept, alike: &Outcome, (data, weighed): (&SlopeData, &Candidate
 }
 
 /// Steps 3 and 4: noise weights, first from a guess of the policy's length, then from a pilot policy.
-fn weighted(gp: &SlopeGp, kept: &Kept) -> Result<SlopeData, GpError> {
+fn data_with_noise_weights(gp: &SlopeGp, kept: &Kept) -> Result<SlopeData, GpError> {
     if let Some(of_stretches) = &kept.of_stretches {
         return SlopeData::from_kept(kept, of_stretches.weights.clone());
     }
