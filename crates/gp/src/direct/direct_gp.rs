@@ -10,7 +10,7 @@ use crate::evidence::family_fit::{FamilyFit, each_until_exact};
 use crate::kernel::family::Family;
 use crate::left_out::LeftOutPredictions;
 use crate::report::doubt::Doubt;
-use crate::rows::kept::{Kept, Selection};
+use crate::rows::kept::{Kept, RowLimits};
 use crate::support::only_deviation_into;
 use crate::{GpError, Rows};
 
@@ -64,17 +64,17 @@ impl DirectGp {
     /// # Errors
     /// [`GpError::Parameter`], or the reason for refusing the rows: too few, no motion, one state, no Cholesky factor.
     pub fn fit<R: Rng + ?Sized>(&self, rows: &Rows, rng: &mut R) -> Result<DirectFit, GpError> {
-        let kept = self.selection()?.keep(rows, rng)?;
+        let kept = self.row_limits()?.keep(rows, rng)?;
         Ok(fit_direct(&self.families, &kept)?.fit)
     }
 
-    fn selection(&self) -> Result<Selection, GpError> {
+    fn row_limits(&self) -> Result<RowLimits, GpError> {
         if self.families.is_empty() {
             let requirement = "name at least one family";
             return Err(GpError::Parameter { name: "families", value: 0.0, requirement });
         }
         let &DirectGp { max_rows, hyper_rows, least_snr, least_speed, .. } = self;
-        Ok(Selection { max_rows, hyper_rows, least_snr, least_speed })
+        Ok(RowLimits { max_rows, hyper_rows, least_snr, least_speed })
     }
 }
 

@@ -24,7 +24,7 @@ const ROUNDS: usize = 6;
 const IGNORED: f64 = 1e4;
 
 /// The direct GP of the free rows.
-pub(crate) struct OfFreeRows {
+pub(crate) struct FreeRowsFit {
     pub(crate) direct: DirectOutcome,
     /// Whether each row is free, (M).
     pub(crate) free: Vec<bool>,
@@ -34,24 +34,24 @@ pub(crate) struct OfFreeRows {
     pub(crate) along: f64,
 }
 
-impl OfFreeRows {
-    fn new(direct: DirectOutcome, free: Vec<bool>, within: f64, kept: &Kept) -> OfFreeRows {
+impl FreeRowsFit {
+    fn new(direct: DirectOutcome, free: Vec<bool>, within: f64, kept: &Kept) -> FreeRowsFit {
         let (mut along, mut all) = (0.0, 0.0);
         for row in (0..free.len()).filter(|&row| !free[row]) {
             let error = direct.left_out.residuals.row(row);
             along += ((error * kept.velocities.column(row)).x / kept.speeds[row]).powi(2);
             all += error.norm_squared();
         }
-        OfFreeRows { direct, free, within, along: along / all }
+        FreeRowsFit { direct, free, within, along: along / all }
     }
 
     /// Repeats the fit, with one family, without the rows that it predicts worst until these no longer change; at last with all families.
     /// `None` if `all`, the fit of all rows, has no such rows or too many, or if they do not look like deflected ones.
-    pub(crate) fn of(families: &[Family], kept: &Kept, all: &DirectOutcome) -> Option<OfFreeRows> {
+    pub(crate) fn of(families: &[Family], kept: &Kept, all: &DirectOutcome) -> Option<FreeRowsFit> {
         if all.left_out.is_nearly_exact() {
             return None;
         }
-        let mut found: Option<OfFreeRows> = None;
+        let mut found: Option<FreeRowsFit> = None;
         for _ in 0..ROUNDS {
             let direct = found.as_ref().map_or(all, |found| &found.direct);
             let errors: Vec<f64> = direct.left_out.residuals.row_iter().map(|row| row.norm_squared()).collect();
@@ -68,7 +68,7 @@ impl OfFreeRows {
             }
             let within = direct.fit.model.unit * limit.sqrt();
             let direct = fit_direct(&[all.fit.family], &without_deflected(kept, &free)).ok()?;
-            let next = OfFreeRows::new(direct, free, within, kept);
+            let next = FreeRowsFit::new(direct, free, within, kept);
             if found.is_some() && next.along * kept.velocities.nrows() as f64 > HOPELESS {
                 return None;
             }
@@ -79,15 +79,15 @@ impl OfFreeRows {
             return Some(found);
         }
         let direct = fit_direct(families, &without_deflected(kept, &found.free)).ok()?;
-        Some(OfFreeRows::new(direct, found.free, found.within, kept))
+        Some(FreeRowsFit::new(direct, found.free, found.within, kept))
     }
 
     /// The same model on all rows, those near its predictions free, through at most `most` of them; `None` without a Cholesky factor.
-    pub(crate) fn on_all_rows(&self, all: &Kept, most: usize) -> Option<OfFreeRows> {
+    pub(crate) fn on_all_rows(&self, all: &Kept, most: usize) -> Option<FreeRowsFit> {
         let within = self.within;
         let free = near(&self.direct.fit.model.moving_actions(all.states.as_view()), all.observed(), within);
         let direct = self.direct.on_all_rows(&without_deflected(all, &free), most)?;
-        Some(OfFreeRows::new(direct, free, within, all))
+        Some(FreeRowsFit::new(direct, free, within, all))
     }
 }
 

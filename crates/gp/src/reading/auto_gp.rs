@@ -11,8 +11,8 @@ use crate::direct::free_rows::near;
 use crate::kernel::family::Family;
 use crate::left_out::comparison::{difference, much_better};
 use crate::reading::Hypothesis;
-use crate::reading::both::{Both, LeftOutErrors};
 use crate::reading::numbers::{LeftOutRow, ReadingNumbers, TrajectoryErrors};
+use crate::reading::slope_and_direct::{LeftOutErrors, SlopeAndDirect};
 use crate::slope::cross_path::CrossPathEvidence;
 use crate::slope::fit::SlopeFit;
 use crate::slope::judgement::{NOTHING_KNOWN, ReportInput, report};
@@ -69,9 +69,9 @@ impl AutoGp {
     /// # Errors
     /// As [`SlopeGp::fit`] and [`DirectGp::fit`](crate::DirectGp::fit).
     pub fn fit<R: Rng + ?Sized>(&self, rows: &Rows, rng: &mut R) -> Result<AutoFit, GpError> {
-        let kept = self.slope.selection()?.keep(rows, rng)?;
+        let kept = self.slope.row_limits()?.keep(rows, rng)?;
         let (slope, direct) = rayon::join(|| outcome(&self.slope, &kept), || fit_direct(&self.direct_families, &kept));
-        let few = Both { kept, slope: slope?, direct: direct?, freely: None };
+        let few = SlopeAndDirect { kept, slope: slope?, direct: direct?, freely: None };
         let look = self.free_rows && self.reading.is_none();
         let few = if look { few.with_free_rows(&self.direct_families) } else { few };
         // Free rows that explain the others leave no push to explain.
@@ -92,7 +92,7 @@ impl AutoGp {
         };
         let (numbers, left_out) = both.compare_predictions(pushed.as_ref());
         let reading = if pushed.is_some() { Hypothesis::Constrained } else { numbers.reading() };
-        let Both { kept, slope, direct, freely } = both;
+        let SlopeAndDirect { kept, slope, direct, freely } = both;
         let (slope, kept) = match pushed {
             Some(Pushed { outcome, kept, .. }) => (outcome, kept),
             None => (slope, kept),

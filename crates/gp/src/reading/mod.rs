@@ -1,8 +1,8 @@
 //! Determines whether the demonstrations were constrained.
 
 pub(crate) mod auto_gp;
-pub(crate) mod both;
 pub(crate) mod numbers;
+pub(crate) mod slope_and_direct;
 
 use serde::{Deserialize, Serialize};
 

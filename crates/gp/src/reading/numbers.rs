@@ -3,7 +3,7 @@ use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
 
 use crate::Rows;
-use crate::direct::free_rows::OfFreeRows;
+use crate::direct::free_rows::FreeRowsFit;
 use crate::direct::model::DirectModel;
 use crate::left_out::LeftOutPredictions;
 use crate::left_out::comparison::{NEGLIGIBLE, difference, log_ratio, t_of_mean};
@@ -103,7 +103,7 @@ pub(crate) struct Compared<'a> {
     /// ū.
     pub(crate) direct_unit: f64,
     /// The free rows from which the direct GP was learnt, if not from all.
-    pub(crate) freely: Option<&'a OfFreeRows>,
+    pub(crate) freely: Option<&'a FreeRowsFit>,
     /// The slope GP's error on each group, as a share of the quantity to predict, if it learnt from other rows than `data`.
     pub(crate) shares: Option<&'a [f64]>,
 }
@@ -144,7 +144,7 @@ impl Compared<'_> {
 
     /// (R10).
     fn free(&self) -> Option<FreeRows> {
-        let &OfFreeRows { ref free, within, along, .. } = self.freely?;
+        let &FreeRowsFit { ref free, within, along, .. } = self.freely?;
         let squares = (0..free.len()).filter(|&row| !free[row]).map(|row| self.direct_residual(row).powi(2));
         let (count, sum) = squares.fold((0, 0.0), |(count, sum), square| (count + 1, sum + square));
         let misfit = sum / f64::from(count.max(1)) / within.powi(2);

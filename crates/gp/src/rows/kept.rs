@@ -13,9 +13,9 @@ use crate::rows::{MOST_ROWS, parts_along};
 use crate::stretches::pushes::Pushes;
 use crate::{GpError, Rows};
 
-/// The selection of the rows that a fit keeps.
+/// Which rows a fit keeps, and how many.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Selection {
+pub(crate) struct RowLimits {
     pub(crate) max_rows: usize,
     pub(crate) hyper_rows: usize,
     pub(crate) least_snr: f64,
@@ -134,10 +134,10 @@ pub(crate) fn rescaled(states: &DMatrix<f64>, factors: &DVector<f64>) -> DMatrix
     scaled(states, &factors.clone().resize_vertically(dim + context_dim, context))
 }
 
-impl Selection {
-    /// The same selection with smaller maxima.
-    pub(crate) fn at_most(self, max_rows: usize, hyper_rows: usize) -> Selection {
-        Selection { max_rows: self.max_rows.min(max_rows), hyper_rows: self.hyper_rows.min(hyper_rows), ..self }
+impl RowLimits {
+    /// The same limits with smaller maxima.
+    pub(crate) fn at_most(self, max_rows: usize, hyper_rows: usize) -> RowLimits {
+        RowLimits { max_rows: self.max_rows.min(max_rows), hyper_rows: self.hyper_rows.min(hyper_rows), ..self }
     }
 
     pub(crate) fn check(&self) -> Result<(), GpError> {
@@ -184,7 +184,7 @@ impl Selection {
         Ok(Kept { hyper, dropped, ..kept })
     }
 
-    /// The same rows and about `most` of those that [`Selection::keep`] thinned; `None` if it kept all.
+    /// The same rows and about `most` of those that [`RowLimits::keep`] thinned; `None` if it kept all.
     pub(crate) fn keep_all(&self, rows: &Rows, some: &Kept, most: usize) -> Option<Kept> {
         if some.dropped.thinned == 0 {
             return None;

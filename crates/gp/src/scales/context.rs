@@ -30,7 +30,7 @@ impl SlopeGp {
         if context_dim == 0 {
             return Ok(alike);
         }
-        let kept = self.selection()?.at_most(ROWS, HYPER_ROWS).keep(rows, rng)?;
+        let kept = self.row_limits()?.at_most(ROWS, HYPER_ROWS).keep(rows, rng)?;
         let mut best = (1.0, f64::NEG_INFINITY);
         for worth in WORTH {
             let r_squared = self.left_out_in(&kept, &(&alike * worth)).unwrap_or(f64::NEG_INFINITY);

@@ -16,7 +16,7 @@ use crate::kernel::block::Block;
 use crate::left_out::LeftOutPredictions;
 use crate::left_out::comparison::{DIFFERS, difference, much_better};
 use crate::left_out::level::Targets;
-use crate::rows::kept::{Kept, Selection, rescaled, spreads};
+use crate::rows::kept::{Kept, RowLimits, rescaled, spreads};
 use crate::slope::data::SlopeData;
 use crate::slope::push_test::PushTest;
 use crate::slope::slope_gp::SlopeGp;
@@ -115,7 +115,7 @@ impl SlopeGp {
     /// # Errors
     /// As [`SlopeGp::fit`].
     pub fn learn_scales<R: Rng + ?Sized>(&self, rows: &Rows, rng: &mut R) -> Result<Option<LearntScales>, GpError> {
-        let few = self.selection()?.at_most(ROWS, HYPER_ROWS);
+        let few = self.row_limits()?.at_most(ROWS, HYPER_ROWS);
         let kept = few.keep(rows, rng)?;
         let dim = rows.dim();
         let spread = spreads(&kept.states).rows(0, dim).into_owned();
@@ -136,7 +136,7 @@ impl SlopeGp {
 
 /// Rows of stretches, in the recorded units; stretches are found with every axis divided by its `spread`. `None` if nothing pushes, or if
 /// they cover few movements.
-fn stretches(rows: &Rows, kept: &Kept, selection: &Selection, spread: &DVector<f64>) -> Option<Kept> {
+fn stretches(rows: &Rows, kept: &Kept, limits: &RowLimits, spread: &DVector<f64>) -> Option<Kept> {
     let (dim, factors) = (rows.dim(), spread.map(f64::recip));
     let states = rescaled(rows.states(), &factors);
     let velocities = scaled(rows.velocities(), &factors);
@@ -148,7 +148,7 @@ fn stretches(rows: &Rows, kept: &Kept, selection: &Selection, spread: &DVector<f
     };
     let stretches =
         Stretches::of(&alike, &View::recorded(&alike), Switches::Sought).filter(Stretches::push_is_significant)?;
-    let own = stretches.rows(&alike, kept, selection)?;
+    let own = stretches.rows(&alike, kept, limits)?;
     (covered(&alike, &own, kept) >= COVERED).then(|| own.scaled(spread))
 }
 

@@ -10,7 +10,7 @@ use crate::rows::noise_weights::{certain_weights, slope_weights};
 use crate::rows::thinning::scattered;
 use crate::slope::candidate::Candidate;
 use crate::slope::data::SlopeData;
-use crate::slope::search::{NEARLY, Outcome, best_of, candidate, nearly_best};
+use crate::slope::search::{NEARLY, SlopeOutcome, best_of, candidate, nearly_best};
 use crate::slope::slope_gp::SlopeGp;
 
 /// Up to this many rows of certain velocities per kept row, the other rows add almost nothing.
@@ -37,13 +37,13 @@ const INDUCING: usize = 500;
 /// More rows, and the outcome of a search on them.
 pub(crate) struct OnAllRows {
     pub(crate) kept: Kept,
-    pub(crate) outcome: Outcome,
+    pub(crate) outcome: SlopeOutcome,
 }
 
 /// [`on_all_rows`] for rows of samples.
-pub(crate) fn on_all_samples(gp: &SlopeGp, rows: &Rows, kept: &Kept, thinned: &Outcome) -> Option<OnAllRows> {
-    let selection = gp.selection().ok()?;
-    let at_most = |most| selection.keep_all(rows, kept, most);
+pub(crate) fn on_all_samples(gp: &SlopeGp, rows: &Rows, kept: &Kept, thinned: &SlopeOutcome) -> Option<OnAllRows> {
+    let limits = gp.row_limits().ok()?;
+    let at_most = |most| limits.keep_all(rows, kept, most);
     on_all_rows(gp, More { at_most: &at_most, noisy: rows.variances().is_some() }, kept, thinned)
 }
 
@@ -62,7 +62,7 @@ pub(crate) fn on_all_rows(
     gp: &SlopeGp,
     More { at_most, noisy }: More<'_>,
     kept: &Kept,
-    thinned: &Outcome,
+    thinned: &SlopeOutcome,
 ) -> Option<OnAllRows> {
     if gp.inducing_rows == 0 || thinned.least_hidden {
         return None;
@@ -93,7 +93,7 @@ pub(crate) fn on_all_rows(
 fn all_induced(
     gp: &SlopeGp,
     at_most: &dyn Fn(usize) -> Option<Kept>,
-    before: &Outcome,
+    before: &SlopeOutcome,
     worth: impl Fn(&Kept, &SlopeData, &Candidate) -> bool,
 ) -> (Option<OnAllRows>, Option<OnAllRows>) {
     let (inducing, fewer) = (gp.inducing_rows, gp.inducing_rows.min(INDUCING));
@@ -130,7 +130,7 @@ impl Judge<'_> {
 /// Exact models of a limited number of rows, with amplitudes fitted to these. If the previously selected model predicts nearly exactly,
 /// prediction depends on the units of z and y. The units are then those of `thinned` or of these rows, whichever give that model the lower
 /// error.
-fn exact(gp: &SlopeGp, more: &Kept, thinned: &Outcome, judge: &Judge<'_>) -> Option<OnAllRows> {
+fn exact(gp: &SlopeGp, more: &Kept, thinned: &SlopeOutcome, judge: &Judge<'_>) -> Option<OnAllRows> {
     let count = more.rows.len();
     let hyper = scattered(count, count.min(gp.hyper_rows.max(HYPER)), 0.0).collect();
     let kept = Kept { hyper, ..more.clone() };
@@ -156,7 +156,7 @@ fn exact(gp: &SlopeGp, more: &Kept, thinned: &Outcome, judge: &Judge<'_>) -> Opt
 /// of the previously selected kind is not `worth` continuing.
 fn induced(
     all: Kept,
-    (before, nearly): (&Outcome, f64),
+    (before, nearly): (&SlopeOutcome, f64),
     most: usize,
     worth: impl Fn(&Kept, &SlopeData, &Candidate) -> bool,
 ) -> Option<OnAllRows> {
@@ -169,7 +169,7 @@ fn induced(
 /// kind is not `worth` trying the other kind.
 fn refit_nearly_best(
     (kept, data): (Kept, SlopeData),
-    (before, nearly): (&Outcome, f64),
+    (before, nearly): (&SlopeOutcome, f64),
     mut fit: impl FnMut(&SlopeData, &Kept, (Family, ModelKind), &[(Block, f64)]) -> Option<Candidate>,
     worth: impl Fn(&Kept, &SlopeData, &Candidate) -> bool,
 ) -> Option<OnAllRows> {
@@ -199,7 +199,7 @@ fn refit_nearly_best(
         }
         (potential, rotation) => (potential.or(rotation)?, None, None),
     };
-    let outcome = Outcome { data, taken, other, curl_t, families, least_hidden: false };
+    let outcome = SlopeOutcome { data, taken, other, curl_t, families, least_hidden: false };
     Some(OnAllRows { kept, outcome })
 }
 
@@ -210,7 +210,7 @@ fn nearly_best_of(families: &[FamilyReport], kind: ModelKind, nearly: f64) -> Ve
 }
 
 /// D of other rows, computed as for the previous ones; rows of stretches have their own.
-fn noise_weights(all: &Kept, before: &Outcome) -> Vec<f64> {
+fn noise_weights(all: &Kept, before: &SlopeOutcome) -> Vec<f64> {
     if let Some(of_stretches) = &all.of_stretches {
         return of_stretches.weights.clone();
     }

@@ -30,7 +30,7 @@ impl SlopeGp {
     /// # Errors
     /// [`GpError::Parameter`], or the reason for refusing the rows: too few, no motion, one state, no Cholesky factor.
     pub fn fit<R: Rng + ?Sized>(&self, rows: &Rows, rng: &mut R) -> Result<SlopeFit, GpError> {
-        let kept = self.selection()?.keep(rows, rng)?;
+        let kept = self.row_limits()?.keep(rows, rng)?;
         let plain = outcome(self, &kept)?;
         let pushed = pushed(self, rows, &kept, &plain).map(|pushed| pushed.on_all_rows(rows));
         let (outcome, kept) = match pushed {

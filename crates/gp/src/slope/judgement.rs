@@ -17,7 +17,7 @@ use crate::rows::thinning::every_so_many;
 use crate::slope::candidate::Candidate;
 use crate::slope::cross_path::CrossPathEvidence;
 use crate::slope::data::SlopeData;
-use crate::slope::search::Outcome;
+use crate::slope::search::SlopeOutcome;
 
 /// The error of predicting the mean alone; a wider posterior adds no information.
 pub(crate) const NOTHING_KNOWN: f64 = 1.0;
@@ -33,7 +33,7 @@ const SWITCHED: f64 = 0.5;
 
 /// Inputs of a report.
 pub(crate) struct ReportInput<'a> {
-    pub(crate) outcome: &'a Outcome,
+    pub(crate) outcome: &'a SlopeOutcome,
     pub(crate) kept: &'a Kept,
     pub(crate) rows: &'a Rows,
     pub(crate) across: CrossPathEvidence,
@@ -41,7 +41,7 @@ pub(crate) struct ReportInput<'a> {
 
 pub(crate) fn report(chosen: &ReportInput<'_>) -> TrustReport {
     let ReportInput { outcome, kept, rows, across } = chosen;
-    let Outcome { data, taken, other, curl_t, families, .. } = outcome;
+    let SlopeOutcome { data, taken, other, curl_t, families, .. } = outcome;
     let CovariancesAtRows { traces, posterior, prior } = covariances_at_rows(taken, kept, data);
     let ambiguity = other.as_ref().map_or(0.0, |other| ambiguity(taken, other));
     let noise = noise(data, taken);

@@ -5,7 +5,7 @@ use nalgebra::{DMatrix, DMatrixView, DVector, DVectorView};
 use crate::kernel::panel::Panel;
 use crate::kernel::slope_covariance::SlopeCovariance;
 use crate::kernel::whitening::Whitening;
-use crate::outline::Outline;
+use crate::screening_subset::ScreeningSubset;
 use crate::slope::expansion::Expansion;
 use crate::slope::policy::{SlopePolicy, SlopePotential};
 use crate::support::{Variances, supported};
@@ -18,7 +18,7 @@ pub struct SlopeModel {
     /// σ² without the floor.
     pub(crate) noise: f64,
     pub(crate) whitening: Whitening,
-    outline: Outline<Expansion>,
+    screening: ScreeningSubset<Expansion>,
 }
 
 impl SlopeModel {
@@ -26,7 +26,13 @@ impl SlopeModel {
         let has_potential = expansion.blocks.iter().all(|block| block.has_potential());
         let expansion = Arc::new(expansion);
         let potential = has_potential.then(|| SlopePotential { expansion: Arc::clone(&expansion) });
-        SlopeModel { policy: SlopePolicy { expansion }, potential, noise, whitening, outline: Outline::default() }
+        SlopeModel {
+            policy: SlopePolicy { expansion },
+            potential,
+            noise,
+            whitening,
+            screening: ScreeningSubset::default(),
+        }
     }
 
     /// π̂.
@@ -130,7 +136,7 @@ impl SlopeModel {
         };
         let prior_of = (&SlopeCovariance { blocks, z, n }, &amplitudes[..], self.noise);
         let some = |states: DMatrixView<'_, f64>| {
-            let Some((part, factor)) = self.outline.part(weights.len(), &self.whitening, prior_of, part) else {
+            let Some((part, factor)) = self.screening.part(weights.len(), &self.whitening, prior_of, part) else {
                 return vec![false; states.ncols()];
             };
             let mut each = vec![0.0; dim];
@@ -140,7 +146,7 @@ impl SlopeModel {
             };
             let prior: Vec<f64> = states.column_iter().map(prior).collect();
             let covariances = part.policy_with_rows_at(&states.column_iter().collect::<Vec<_>>());
-            self.outline.explains(factor, covariances, &prior, (speed.powi(2), least))
+            self.screening.explains(factor, covariances, &prior, (speed.powi(2), least))
         };
         supported(states, dim, least, some, |states| self.variances(states))
     }

@@ -23,7 +23,7 @@ const ROUNDS: usize = 3;
 pub(super) const NEARLY: f64 = 4.0;
 
 /// The selected model, the other one, and all fits.
-pub(crate) struct Outcome {
+pub(crate) struct SlopeOutcome {
     pub(crate) data: SlopeData,
     pub(crate) taken: Candidate,
     pub(crate) other: Option<Candidate>,
@@ -34,7 +34,7 @@ pub(crate) struct Outcome {
 }
 
 /// The search: steps 3 to 8, and step 9, which weights certain velocities if they are not predicted nearly exactly.
-pub(crate) fn outcome(gp: &SlopeGp, kept: &Kept) -> Result<Outcome, GpError> {
+pub(crate) fn outcome(gp: &SlopeGp, kept: &Kept) -> Result<SlopeOutcome, GpError> {
     let alike = search_with_weights(gp, kept, data_with_noise_weights(gp, kept)?)?;
     if kept.variances.is_some() || kept.of_stretches.is_some() || alike.taken.left_out.is_nearly_exact() {
         return Ok(alike);
@@ -43,7 +43,7 @@ pub(crate) fn outcome(gp: &SlopeGp, kept: &Kept) -> Result<Outcome, GpError> {
 }
 
 /// Steps 5 to 8 with given noise weights.
-fn search_with_weights(gp: &SlopeGp, kept: &Kept, data: SlopeData) -> Result<Outcome, GpError> {
+fn search_with_weights(gp: &SlopeGp, kept: &Kept, data: SlopeData) -> Result<SlopeOutcome, GpError> {
     let mut families = Vec::new();
     let tried = each_until_exact(
         &gp.families,
@@ -52,7 +52,7 @@ fn search_with_weights(gp: &SlopeGp, kept: &Kept, data: SlopeData) -> Result<Out
     );
     let potential = best_of(tried.into_iter(), ModelKind::Potential, &mut families).ok_or(GpError::NoFactor)?;
     let Some(rotation) = rotation(gp, &data, kept, &potential, &mut families) else {
-        return Ok(Outcome { data, taken: potential, other: None, curl_t: None, families, least_hidden: false });
+        return Ok(SlopeOutcome { data, taken: potential, other: None, curl_t: None, families, least_hidden: false });
     };
     choose_rotation(gp, kept, data, (Some(potential), rotation), families)
 }
@@ -64,7 +64,7 @@ fn choose_rotation(
     data: SlopeData,
     (potential, rotation): (Option<Candidate>, Candidate),
     mut families: Vec<FamilyReport>,
-) -> Result<Outcome, GpError> {
+) -> Result<SlopeOutcome, GpError> {
     let t = potential.as_ref().map(|potential| {
         curl_t(&potential.left_out, &rotation.left_out, &data.targets.noise_weights, &data.targets.groups)
     });
@@ -81,11 +81,11 @@ fn choose_rotation(
         (None, Some(potential)) if !rotates => (potential, Some(rotation)),
         (None, potential) => (rotation, potential),
     };
-    Ok(Outcome { data, taken, other, curl_t: t, families, least_hidden })
+    Ok(SlopeOutcome { data, taken, other, curl_t: t, families, least_hidden })
 }
 
 /// The search on more rows of stretches than `fewer`, restricted to the models that were nearly the best there.
-pub(crate) fn outcome_of_nearly_best(gp: &SlopeGp, kept: &Kept, fewer: &Outcome) -> Result<Outcome, GpError> {
+pub(crate) fn outcome_of_nearly_best(gp: &SlopeGp, kept: &Kept, fewer: &SlopeOutcome) -> Result<SlopeOutcome, GpError> {
     let data = data_with_noise_weights(gp, kept)?;
     let nearly_best = nearly_best(fewer.families.iter(), NEARLY);
     let mut families = Vec::new();
@@ -98,7 +98,9 @@ pub(crate) fn outcome_of_nearly_best(gp: &SlopeGp, kept: &Kept, fewer: &Outcome)
     };
     match (best(ModelKind::Potential), best(ModelKind::Helmholtz)) {
         (potential, Some(rotation)) => choose_rotation(gp, kept, data, (potential, rotation), families),
-        (Some(taken), None) => Ok(Outcome { data, taken, other: None, curl_t: None, families, least_hidden: false }),
+        (Some(taken), None) => {
+            Ok(SlopeOutcome { data, taken, other: None, curl_t: None, families, least_hidden: false })
+        }
         (None, None) => Err(GpError::NoFactor),
     }
 }
@@ -115,7 +117,7 @@ pub(super) fn nearly_best<'a>(
 
 /// Step 9: repeats the search with the weights (S18) of a pilot policy, which is itself fitted with the weights from the
 /// selected model; `None` if that does not predict better, or if the pilot already predicts clearly worse.
-fn search_with_speed_weights(gp: &SlopeGp, kept: &Kept, alike: &Outcome) -> Result<Option<Outcome>, GpError> {
+fn search_with_speed_weights(gp: &SlopeGp, kept: &Kept, alike: &SlopeOutcome) -> Result<Option<SlopeOutcome>, GpError> {
     let weighed_by = |lengths: &[f64]| SlopeData::from_kept(kept, certain_weights(&kept.speeds, lengths));
     let data = weighed_by(&alike.taken.lengths())?;
     let Some(pilot) = candidate(gp, &data, kept, alike.taken.family, alike.taken.kind) else { return Ok(None) };
@@ -127,7 +129,7 @@ fn search_with_speed_weights(gp: &SlopeGp, kept: &Kept, alike: &Outcome) -> Resu
 }
 
 /// t of (S18): the certainty that a model with weights predicts left-out movements better.
-fn gain_t(kept: &Kept, alike: &Outcome, (data, weighed): (&SlopeData, &Candidate)) -> f64 {
+fn gain_t(kept: &Kept, alike: &SlopeOutcome, (data, weighed): (&SlopeData, &Candidate)) -> f64 {
     let errors = |data: &SlopeData, candidate: &Candidate| -> Vec<f64> {
         candidate.left_out.residuals.iter().map(|residual| data.unit * residual).collect()
     };

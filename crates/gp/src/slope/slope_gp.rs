@@ -3,7 +3,7 @@ use serde::{Deserialize, Serialize};
 use crate::GpError;
 use crate::kernel::family::{Family, Trend};
 use crate::left_out::curl_test::CurlTest;
-use crate::rows::kept::Selection;
+use crate::rows::kept::RowLimits;
 use crate::slope::push_test::PushTest;
 
 /// A Gaussian process on a potential, observed only through slopes along the motion (S1).
@@ -60,12 +60,12 @@ impl Default for SlopeGp {
 }
 
 impl SlopeGp {
-    pub(crate) fn selection(&self) -> Result<Selection, GpError> {
+    pub(crate) fn row_limits(&self) -> Result<RowLimits, GpError> {
         if self.families.is_empty() {
             let requirement = "name at least one family";
             return Err(GpError::Parameter { name: "families", value: 0.0, requirement });
         }
         let &SlopeGp { max_rows, hyper_rows, least_snr, least_speed, .. } = self;
-        Ok(Selection { max_rows, hyper_rows, least_snr, least_speed })
+        Ok(RowLimits { max_rows, hyper_rows, least_snr, least_speed })
     }
 }

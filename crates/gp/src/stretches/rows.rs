@@ -6,7 +6,7 @@ use nalgebra::{DMatrix, DVector, DVectorView};
 use rayon::prelude::*;
 
 use crate::Rows;
-use crate::rows::kept::{Kept, OfStretches, RowsDropped, Selection};
+use crate::rows::kept::{Kept, OfStretches, RowLimits, RowsDropped};
 use crate::rows::noise_weights::relative;
 use crate::rows::thinning::{MIDDLE, thinned};
 use crate::stretches::pushes::Pushes;
@@ -57,14 +57,14 @@ pub(crate) fn covered(rows: &Rows, own: &Kept, samples: &Kept) -> f64 {
 }
 
 impl Stretches {
-    /// Rows of all samples in stretches, with their noise weights (S23), (S44), evenly thinned to the limits of `selection`. `None` if
+    /// Rows of all samples in stretches, with their noise weights (S23), (S44), evenly thinned to the `limits`. `None` if
     /// they come from too few movements.
     ///
     /// In a task space each sample has several rows, whose directions do not depend on the velocity, so `rows` may be means (S33).
-    pub(crate) fn rows(&self, rows: &Rows, kept: &Kept, selection: &Selection) -> Option<Kept> {
-        let found = self.rows_with(rows, kept, selection.max_rows, &[])?;
+    pub(crate) fn rows(&self, rows: &Rows, kept: &Kept, limits: &RowLimits) -> Option<Kept> {
+        let found = self.rows_with(rows, kept, limits.max_rows, &[])?;
         let count = found.rows.len();
-        let hyper = (0..count).step_by(count.div_ceil(selection.hyper_rows).max(1)).collect();
+        let hyper = (0..count).step_by(count.div_ceil(limits.hyper_rows).max(1)).collect();
         Some(Kept { hyper, ..found })
     }
 
@@ -282,10 +282,10 @@ mod tests {
             let system = CyclesWithTask { n_trajectories: 6, ..CyclesWithTask::default() };
             let shown = demonstrations(&system.record(&mut ChaCha8Rng::seed_from_u64(seed)).unwrap()).unwrap();
             let rows = FrontEnd::Velocities.rows(&shown).unwrap();
-            let selection = |max_rows| Selection { max_rows, hyper_rows: 10, least_snr: 1.5, least_speed: 1e-6 };
-            let samples = selection(few).keep(&rows, &mut ChaCha8Rng::seed_from_u64(seed)).unwrap();
+            let limits = |max_rows| RowLimits { max_rows, hyper_rows: 10, least_snr: 1.5, least_speed: 1e-6 };
+            let samples = limits(few).keep(&rows, &mut ChaCha8Rng::seed_from_u64(seed)).unwrap();
             let stretches = Stretches::of(&rows, &View::recorded(&rows), Switches::Sought).unwrap();
-            let fewer = stretches.rows(&rows, &samples, &selection(few)).unwrap();
+            let fewer = stretches.rows(&rows, &samples, &limits(few)).unwrap();
             let more = stretches.more_rows(&rows, &fewer, most).unwrap();
             prop_assert!((most..=most + few).contains(&more.rows.len()), "{} of {most}", more.rows.len());
             for (at, place) in positions(&more.rows, &fewer.rows).into_iter().enumerate() {
@@ -293,7 +293,7 @@ mod tests {
                 prop_assert_eq!(more.velocities.column(place), fewer.velocities.column(at));
                 prop_assert_eq!(more.indices[place], fewer.indices[at]);
             }
-            let all = stretches.rows(&rows, &samples, &selection(10_000)).unwrap();
+            let all = stretches.rows(&rows, &samples, &limits(10_000)).unwrap();
             prop_assert!(stretches.more_rows(&rows, &all, most).is_none());
         }
     }

@@ -13,8 +13,8 @@ use crate::kernel::panel::Panel;
 use crate::kernel::row_table::{RowTable, TOGETHER, over_rows};
 use crate::kernel::term::Term;
 use crate::kernel::whitening::Whitening;
-use crate::outline::Outline;
 use crate::rows::scaling::Scaling;
+use crate::screening_subset::ScreeningSubset;
 use crate::support::{Variances, each_action, supported};
 use sums::{Action, CovariancesWithRows};
 
@@ -35,7 +35,7 @@ pub struct DirectModel {
     pub(crate) falling: Falling,
     /// From [`trend`].
     trend: [f64; 3],
-    outline: Outline<Box<DirectModel>>,
+    screening: ScreeningSubset<Box<DirectModel>>,
 }
 
 impl DirectModel {
@@ -49,8 +49,21 @@ impl DirectModel {
         let table = RowTable::new(&[&z, &weights]);
         let falling = Falling::of_values(&Term::of_velocities(&blocks, &amplitudes, z.nrows()));
         let trend = trend(&blocks, &amplitudes, z.nrows());
-        let outline = Outline::default();
-        DirectModel { scaling, unit, blocks, amplitudes, z, weights, noise, whitening, table, falling, trend, outline }
+        let screening = ScreeningSubset::default();
+        DirectModel {
+            scaling,
+            unit,
+            blocks,
+            amplitudes,
+            z,
+            weights,
+            noise,
+            whitening,
+            table,
+            falling,
+            trend,
+            screening,
+        }
     }
 
     /// (R4): variance of each component at a state, in squared units of the state per second. Costs M².
@@ -107,11 +120,11 @@ impl DirectModel {
         };
         let prior_of = (&DirectCovariance { blocks, z }, &amplitudes[..], *noise);
         let some = |states: DMatrixView<'_, f64>| {
-            let Some((part, factor)) = self.outline.part(z.ncols(), whitening, prior_of, part) else {
+            let Some((part, factor)) = self.screening.part(z.ncols(), whitening, prior_of, part) else {
                 return vec![false; states.ncols()];
             };
             let prior: Vec<f64> = states.column_iter().map(|state| self.prior_variance(state)).collect();
-            self.outline.explains(factor, part.with_rows(states), &prior, (unit.powi(2), least))
+            self.screening.explains(factor, part.with_rows(states), &prior, (unit.powi(2), least))
         };
         supported(states, 1, least, some, |states| self.variances(states))
     }

@@ -5,7 +5,7 @@ use motion::upper_median;
 use crate::Rows;
 use crate::rows::kept::positions;
 use crate::slope::pushed::Pushed;
-use crate::slope::search::Outcome;
+use crate::slope::search::SlopeOutcome;
 
 /// Multiple of the median error above which a stretch counts as contradicted.
 const TIMES: f64 = 25.0;
@@ -64,7 +64,7 @@ impl Pushed {
 
     /// E of (S44) of each stretch, contradicted or not; `None` for a stretch without rows.
     fn errors(&self, rows: &Rows) -> Vec<Option<f64>> {
-        let Pushed { outcome: Outcome { data, taken, .. }, kept, stretches, .. } = self;
+        let Pushed { outcome: SlopeOutcome { data, taken, .. }, kept, stretches, .. } = self;
         let Some(some) = stretches.of_any(rows, kept, (EACH * stretches.all.len()).min(ALL)) else {
             return vec![None; stretches.all.len()];
         };

@@ -11,7 +11,7 @@ use crate::slope::all_rows::{More, OnAllRows, on_all_rows};
 use crate::slope::cross_path::CrossPathEvidence;
 use crate::slope::judgement::{ReportInput, report, root_mean_square};
 use crate::slope::push_test::PushTest;
-use crate::slope::search::{Outcome, outcome, outcome_of_nearly_best};
+use crate::slope::search::{SlopeOutcome, outcome, outcome_of_nearly_best};
 use crate::slope::slope_gp::SlopeGp;
 use crate::stretches::pushes::SMALL;
 use crate::stretches::rows::covered;
@@ -20,7 +20,7 @@ use crate::stretches::{Stretches, Switches};
 
 /// A search on rows of stretches.
 pub(crate) struct Pushed {
-    pub(crate) outcome: Outcome,
+    pub(crate) outcome: SlopeOutcome,
     pub(crate) kept: Kept,
     /// The source of the rows, and the learner that searched on them.
     stretches: Stretches,
@@ -29,7 +29,7 @@ pub(crate) struct Pushed {
 
 /// The search on rows of stretches (S22) if it predicts left-out movements better than `plain`, the search on rows of samples. The
 /// stretches are those in the recorded coordinates, or in the task space with the least expected error.
-pub(crate) fn pushed(gp: &SlopeGp, rows: &Rows, kept: &Kept, plain: &Outcome) -> Option<Pushed> {
+pub(crate) fn pushed(gp: &SlopeGp, rows: &Rows, kept: &Kept, plain: &SlopeOutcome) -> Option<Pushed> {
     if gp.push_test == PushTest::AssumeNone {
         return None;
     }
@@ -51,7 +51,7 @@ const FINALISTS: usize = 3;
 const NEARLY: f64 = 2.0;
 
 /// The search on stretches in the task space with the least expected error, if that is below the error expected of `outcome`.
-fn in_task_space(gp: &SlopeGp, rows: &Rows, (kept, own): (&Kept, &Kept), outcome: &Outcome) -> Option<Pushed> {
+fn in_task_space(gp: &SlopeGp, rows: &Rows, (kept, own): (&Kept, &Kept), outcome: &SlopeOutcome) -> Option<Pushed> {
     if rows.task_spaces().is_empty() || rows.momenta().is_some() {
         return None;
     }
@@ -108,14 +108,14 @@ fn larger(gp: &SlopeGp) -> SlopeGp {
 
 /// Expected error (S19) with `own` rows, divided by the share of the movements that have such rows. R² is not used, because slow, certain
 /// rows and fast rows alone do not have comparable R².
-fn expected(rows: &Rows, outcome: &Outcome, own: &Kept, samples: &Kept) -> f64 {
+fn expected(rows: &Rows, outcome: &SlopeOutcome, own: &Kept, samples: &Kept) -> f64 {
     let report = report(&ReportInput { outcome, kept: own, rows, across: CrossPathEvidence::Tested });
     report.expected_nupe / covered(rows, own, samples)
 }
 
 /// The search on stretches in the recorded coordinates. If a push is detected, not tried if `plain` predicts nearly exactly. Without a
 /// push, the only possible gain is in the noise of the directions, through those of whole movements (S32).
-fn recorded(gp: &SlopeGp, rows: &Rows, kept: &Kept, plain: &Outcome) -> Option<Pushed> {
+fn recorded(gp: &SlopeGp, rows: &Rows, kept: &Kept, plain: &SlopeOutcome) -> Option<Pushed> {
     let settled = plain.taken.left_out.is_nearly_exact();
     if settled && rows.variances().is_none() {
         return None;
@@ -124,7 +124,7 @@ fn recorded(gp: &SlopeGp, rows: &Rows, kept: &Kept, plain: &Outcome) -> Option<P
     let stretches = Stretches::of(rows, &view, Switches::Sought)?;
     if stretches.push_is_significant() {
         let pushed = if settled { None } else { Pushed::search(gp, rows, kept, stretches) }?;
-        let left = |outcome: &Outcome| 1.0 - outcome.taken.left_out.r_squared;
+        let left = |outcome: &SlopeOutcome| 1.0 - outcome.taken.left_out.r_squared;
         return (left(&pushed.outcome) < covered(rows, &pushed.kept, kept) * left(plain)).then_some(pushed);
     }
     rows.variances()?;
@@ -134,13 +134,13 @@ fn recorded(gp: &SlopeGp, rows: &Rows, kept: &Kept, plain: &Outcome) -> Option<P
 
 impl Pushed {
     fn search(gp: &SlopeGp, rows: &Rows, kept: &Kept, stretches: Stretches) -> Option<Pushed> {
-        let kept = stretches.rows(rows, kept, &gp.selection().ok()?)?;
+        let kept = stretches.rows(rows, kept, &gp.row_limits().ok()?)?;
         Some(Pushed { outcome: outcome(gp, &kept).ok()?, kept, stretches, gp: gp.clone() })
     }
 
     /// The same search on other rows, restricted to the models that were nearly the best here.
     fn of_nearly_best(&self, gp: &SlopeGp, rows: &Rows, kept: &Kept, stretches: Stretches) -> Option<Pushed> {
-        let kept = stretches.rows(rows, kept, &gp.selection().ok()?)?;
+        let kept = stretches.rows(rows, kept, &gp.row_limits().ok()?)?;
         let outcome = outcome_of_nearly_best(gp, &kept, &self.outcome).ok()?;
         Some(Pushed { outcome, kept, stretches, gp: gp.clone() })
     }
@@ -156,7 +156,7 @@ impl Pushed {
     }
 
     /// Whether the expected error is lower than that of a search on rows of samples.
-    pub(crate) fn expects_less(&self, rows: &Rows, samples: &Outcome, kept: &Kept) -> bool {
+    pub(crate) fn expects_less(&self, rows: &Rows, samples: &SlopeOutcome, kept: &Kept) -> bool {
         expected(rows, &self.outcome, &self.kept, kept) < expected(rows, samples, kept, kept)
     }
 
@@ -182,7 +182,7 @@ impl Pushed {
     /// sample's rows (with rows along the velocity itself, one row contains all of it). At most 1, the error of predicting nothing, because
     /// a few rows may contain little to predict. A trajectory without stretches gets the share of all others together.
     pub(crate) fn shares(&self, trajectories: &[usize]) -> Vec<f64> {
-        let Outcome { data, taken, .. } = &self.outcome;
+        let SlopeOutcome { data, taken, .. } = &self.outcome;
         let weighed = |rows: &[usize], of: &dyn Fn(usize) -> f64| -> f64 {
             rows.iter().map(|&row| of(row).powi(2) / data.targets.noise_weights[row]).sum()
         };

@@ -2,22 +2,22 @@
 
 use crate::Rows;
 use crate::direct::direct_gp::DirectOutcome;
-use crate::direct::free_rows::OfFreeRows;
+use crate::direct::free_rows::FreeRowsFit;
 use crate::kernel::family::Family;
 use crate::reading::numbers::{Compared, LeftOutRow, ReadingNumbers, TrajectoryErrors};
 use crate::rows::kept::Kept;
 use crate::slope::all_rows::{OnAllRows, on_all_samples};
 use crate::slope::pushed::Pushed;
-use crate::slope::search::Outcome;
+use crate::slope::search::SlopeOutcome;
 use crate::slope::slope_gp::SlopeGp;
 
 /// Both models of the same rows.
-pub(crate) struct Both {
+pub(crate) struct SlopeAndDirect {
     pub(crate) kept: Kept,
-    pub(crate) slope: Outcome,
+    pub(crate) slope: SlopeOutcome,
     pub(crate) direct: DirectOutcome,
     /// The direct GP of the free rows, which replaces that of all rows.
-    pub(crate) freely: Option<OfFreeRows>,
+    pub(crate) freely: Option<FreeRowsFit>,
 }
 
 /// Errors of predictions of left-out trajectories.
@@ -26,15 +26,15 @@ pub(crate) struct LeftOutErrors {
     pub(crate) rows: Vec<LeftOutRow>,
 }
 
-impl Both {
+impl SlopeAndDirect {
     /// Adds the direct GP of the free rows if it explains the others (R10).
-    pub(crate) fn with_free_rows(mut self, families: &[Family]) -> Both {
-        self.freely = OfFreeRows::of(families, &self.kept, &self.direct);
+    pub(crate) fn with_free_rows(mut self, families: &[Family]) -> SlopeAndDirect {
+        self.freely = FreeRowsFit::of(families, &self.kept, &self.direct);
         self.freely_if_it_explains_all()
     }
 
     /// Drops the direct GP of the free rows if the constrained rows contradict it.
-    fn freely_if_it_explains_all(mut self) -> Both {
+    fn freely_if_it_explains_all(mut self) -> SlopeAndDirect {
         if self.freely.is_some() && !self.compare_predictions(None).0.free_rows_explain_all() {
             self.freely = None;
         }
@@ -42,13 +42,13 @@ impl Both {
     }
 
     /// Both models on all rows if that improves the slope GP; otherwise unchanged.
-    pub(crate) fn on_all_rows(self, gp: &SlopeGp, rows: &Rows) -> Both {
+    pub(crate) fn on_all_rows(self, gp: &SlopeGp, rows: &Rows) -> SlopeAndDirect {
         let all = on_all_samples(gp, rows, &self.kept, &self.slope);
         let both = all.and_then(|all| Some((self.direct.on_all_rows(&all.kept, gp.inducing_rows)?, all)));
         match both {
             Some((direct, OnAllRows { kept, outcome })) => {
                 let freely = self.freely.and_then(|freely| freely.on_all_rows(&kept, gp.inducing_rows));
-                Both { kept, slope: outcome, direct, freely }.freely_if_it_explains_all()
+                SlopeAndDirect { kept, slope: outcome, direct, freely }.freely_if_it_explains_all()
             }
             None => self,
         }
@@ -57,7 +57,7 @@ impl Both {
     /// Compares their predictions of left-out trajectories on these rows, with the slope GP of `pushed`, if any, in place of
     /// their own.
     pub(crate) fn compare_predictions(&self, pushed: Option<&Pushed>) -> (ReadingNumbers, LeftOutErrors) {
-        let Both { kept, slope, direct, freely } = self;
+        let SlopeAndDirect { kept, slope, direct, freely } = self;
         let direct = freely.as_ref().map_or(direct, |freely| &freely.direct);
         let actions = pushed.map(|pushed| pushed.outcome.taken.model.actions(&kept.states));
         let shares = pushed.map(|pushed| pushed.shares(&kept.trajectories()));

@@ -21,34 +21,34 @@ const CAUTION: f64 = 1e-8;
 const SINGULAR: f64 = 1e-7;
 /// Share of a prior variance by which the subset must explain more than required, as a margin for rounding.
 const MARGIN: f64 = 1e-3;
-/// After this many states, the outline stays in use if it decided at least one in [`ONE_OF`].
+/// After this many states, the subset stays in use if it decided at least one in [`ONE_OF`].
 const TRIED: usize = 256;
 
 /// A part P of a model: rows S and the factor of G_SS. All rows explain bᵀG⁻¹b of a variance, where b are its covariances with them. G is
 /// the rows' covariance with noise (S6), or L(TᵀT)⁻¹Lᵀ of (S37) for inducing rows. b_SᵀG_SS⁻¹b_S ≤ bᵀG⁻¹b holds for every S, as for every
 /// positive matrix.
 #[derive(Debug)]
-pub(crate) struct Outline<P> {
+pub(crate) struct ScreeningSubset<P> {
     part: OnceLock<Option<(P, InverseOfLower)>>,
     /// Number of states that were tried, and of those with enough support from these rows.
     tried: AtomicUsize,
     told: AtomicUsize,
 }
 
-impl<P> Default for Outline<P> {
+impl<P> Default for ScreeningSubset<P> {
     fn default() -> Self {
         Self { part: OnceLock::new(), tried: AtomicUsize::new(0), told: AtomicUsize::new(0) }
     }
 }
 
 /// A clone starts empty and recomputes its part.
-impl<P> Clone for Outline<P> {
+impl<P> Clone for ScreeningSubset<P> {
     fn clone(&self) -> Self {
         Self::default()
     }
 }
 
-impl<P> Outline<P> {
+impl<P> ScreeningSubset<P> {
     /// The part that `part` makes of some of the model's `rows` rows; `None` if no rows can be separated, or if the part has decided too
     /// few states so far.
     pub(crate) fn part(
