@@ -7,11 +7,11 @@
 mod locked;
 mod noise;
 mod parts;
+mod policy_at_rows;
 mod projected_samples;
 mod spaces;
 mod stretch_estimate;
 mod stretch_kind;
-mod wanted;
 
 pub use stretch_estimate::{Acting, StretchEstimate};
 
@@ -28,10 +28,10 @@ use crate::{GpError, Rows};
 use locked::held_channels;
 use noise::noise;
 use parts::{Parts, rarity_of};
+use policy_at_rows::PolicyAtRows;
 use projected_samples::{Disagreement, ProjectedSamples, SHARED};
 use stretch_estimate::canonical;
 use stretch_kind::{Movement, StretchKind};
-use wanted::Wanted;
 
 /// Standard deviation of the policy in the first round, as a share of its root mean square. In the second round it is the one that the
 /// first leaves.
@@ -76,10 +76,10 @@ impl ConstraintEstimates {
             let longest = movements.iter().map(|movement| movement.len()).max().unwrap_or(0);
             return Err(GpError::ShortMovements { longest, needed: 4 });
         };
-        let wanted = Wanted::of(rows, policy);
+        let policy = PolicyAtRows::of(rows, policy);
         let rarity = vec![0.0; spaces.len()];
-        let mut search = Search { rows, movements, spaces, bases, noise, wanted, rarity, still: false };
-        let first = FIRST.powi(2) * search.wanted.mean_square();
+        let mut search = Search { rows, movements, spaces, bases, noise, policy, rarity, still: false };
+        let first = FIRST.powi(2) * search.policy.mean_square();
         let policy_variance = search.left(&search.parts(first)).unwrap_or(first);
         let pushing = search.parts_in_likely_spaces(policy_variance);
         let (cost, rarity) = (search.cost(&pushing), search.rarity.clone());
@@ -105,7 +105,7 @@ struct Search<'a> {
     spaces: &'a [TaskSpace],
     bases: Vec<Option<DMatrix<f64>>>,
     noise: f64,
-    wanted: Wanted<'a>,
+    policy: PolicyAtRows<'a>,
     /// Costs of (S38).
     rarity: Vec<f64>,
     /// Whether b = 0 in all stretches.
@@ -170,9 +170,9 @@ impl Search<'_> {
     /// Some rows of one movement, if this number of samples share one error of the policy.
     fn movement(&self, rows: &[usize], least: f64, sharing: f64) -> Movement {
         let velocities = self.rows.velocities().select_columns(rows);
-        let disagreement = self.wanted.actions.select_columns(rows) - &velocities;
+        let disagreement = self.policy.actions.select_columns(rows) - &velocities;
         let weight = |variance: f64| 1.0 / (self.noise + sharing * variance.max(least));
-        let weights = self.wanted.variances(rows).into_iter().map(weight).collect();
+        let weights = self.policy.variances(rows).into_iter().map(weight).collect();
         let disagreement = Disagreement::new(disagreement, weights, self.noise);
         let projected = |(space, basis): (&TaskSpace, &Option<DMatrix<f64>>)| {
             basis.as_ref().map(|basis| ProjectedSamples::of(space, basis, rows, &velocities, &disagreement, self.still))
@@ -273,8 +273,8 @@ impl Search<'_> {
     /// Classifies a stretch without a constraint: it follows the policy, or the policy does not move there either.
     fn without(&self, parts: &Parts, part: &Part<StretchKind>) -> Acting {
         let seen = |at: usize| {
-            let wanted = self.wanted.actions.column(parts.rows[at]).norm_squared();
-            wanted * parts.movement.disagreement.weights[at] > SEEN * self.rows.dim() as f64
+            let square = self.policy.actions.column(parts.rows[at]).norm_squared();
+            square * parts.movement.disagreement.weights[at] > SEEN * self.rows.dim() as f64
         };
         let count = (part.begin..part.end).filter(|&at| seen(at)).count();
         if 2 * count >= part.end - part.begin { Acting::Nothing } else { Acting::Unseen }

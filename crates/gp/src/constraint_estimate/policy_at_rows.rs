@@ -13,7 +13,7 @@ use crate::Rows;
 const TOGETHER: usize = 1024;
 
 /// The policy at every row.
-pub(super) struct Wanted<'a> {
+pub(super) struct PolicyAtRows<'a> {
     rows: &'a Rows,
     policy: &'a dyn LearntPolicy,
     /// (n, M).
@@ -23,7 +23,7 @@ pub(super) struct Wanted<'a> {
     variances: Mutex<HashMap<usize, f64>>,
 }
 
-impl<'a> Wanted<'a> {
+impl<'a> PolicyAtRows<'a> {
     pub(super) fn of(rows: &'a Rows, policy: &'a dyn LearntPolicy) -> Self {
         let dim = rows.dim();
         let mut actions = DMatrix::zeros(dim, rows.len());
@@ -35,7 +35,7 @@ impl<'a> Wanted<'a> {
             }
         };
         actions.as_mut_slice().par_chunks_mut(dim * TOGETHER).enumerate().for_each(some);
-        Wanted { rows, policy, actions, variances: Mutex::default() }
+        PolicyAtRows { rows, policy, actions, variances: Mutex::default() }
     }
 
     pub(super) fn variances(&self, rows: &[usize]) -> Vec<f64> {
