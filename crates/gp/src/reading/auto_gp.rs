@@ -48,8 +48,8 @@ pub struct AutoFit {
     pub(crate) slope: SlopeFit,
     pub(crate) direct: DirectFit,
     /// The direct GP of the free rows, if only some rows were constrained.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) freely: Option<DirectFit>,
+    #[serde(rename = "freely", default, skip_serializing_if = "Option::is_none")]
+    pub(crate) free_rows_fit: Option<DirectFit>,
     pub(crate) numbers: ReadingNumbers,
     /// The reading at the time of learning. Older stored models have none; the current rule determines theirs.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -71,11 +71,11 @@ impl AutoGp {
     pub fn fit<R: Rng + ?Sized>(&self, rows: &Rows, rng: &mut R) -> Result<AutoFit, GpError> {
         let kept = self.slope.row_limits()?.keep(rows, rng)?;
         let (slope, direct) = rayon::join(|| outcome(&self.slope, &kept), || fit_direct(&self.direct_families, &kept));
-        let few = SlopeAndDirect { kept, slope: slope?, direct: direct?, freely: None };
+        let few = SlopeAndDirect { kept, slope: slope?, direct: direct?, free_rows_fit: None };
         let look = self.free_rows && self.reading.is_none();
         let few = if look { few.with_free_rows(&self.direct_families) } else { few };
         // Free rows that explain the others leave no push to explain.
-        let free = few.freely.is_some() || few.compare_predictions(None).0.agree_on_free_movement();
+        let free = few.free_rows_fit.is_some() || few.compare_predictions(None).0.agree_on_free_movement();
         let pushed = if free { None } else { pushed(&self.slope, rows, &few.kept, &few.slope) };
         // If the directions of stretches are not informative, nothing pushed.
         let telling = pushed.filter(|pushed| few.compare_predictions(Some(pushed)).0.stretches_tell());
@@ -92,25 +92,25 @@ impl AutoGp {
         };
         let (numbers, left_out) = both.compare_predictions(pushed.as_ref());
         let reading = if pushed.is_some() { Hypothesis::Constrained } else { numbers.reading() };
-        let SlopeAndDirect { kept, slope, direct, freely } = both;
+        let SlopeAndDirect { kept, slope, direct, free_rows_fit } = both;
         let (slope, kept) = match pushed {
             Some(Pushed { outcome, kept, .. }) => (outcome, kept),
             None => (slope, kept),
         };
         // If the slope policy is the better one, left-out movements test it in all directions, whatever their own.
-        let tested = freely.is_none() && (reading == Hypothesis::Constrained || numbers.shows_a_potential());
+        let tested = free_rows_fit.is_none() && (reading == Hypothesis::Constrained || numbers.shows_a_potential());
         let across = if tested { CrossPathEvidence::Tested } else { CrossPathEvidence::Untested };
         let mut report = report(&ReportInput { outcome: &slope, kept: &kept, rows, across });
         if across == CrossPathEvidence::Untested {
-            let actions = freely.as_ref().map_or(&direct.actions, |freely| &freely.direct.actions);
+            let actions = free_rows_fit.as_ref().map_or(&direct.actions, |free_rows_fit| &free_rows_fit.direct.actions);
             let away = difference(actions, &slope.taken.actions);
             report.expected_nupe = expected_beside((reading, numbers.gap, numbers.p_d), away, report.expected_nupe);
         }
         let slope = SlopeFit { model: slope.taken.model, report };
-        let (direct, freely) = (direct.fit, freely.map(|freely| freely.direct.fit));
+        let (direct, free_rows_fit) = (direct.fit, free_rows_fit.map(|free_rows_fit| free_rows_fit.direct.fit));
         let LeftOutErrors { trajectories: left_out, rows: left_out_rows } = left_out;
         let (reading, overridden) = (Some(reading), self.reading);
-        Ok(AutoFit { slope, direct, freely, numbers, reading, overridden, left_out, left_out_rows })
+        Ok(AutoFit { slope, direct, free_rows_fit, numbers, reading, overridden, left_out, left_out_rows })
     }
 }
 
@@ -177,14 +177,17 @@ impl AutoFit {
     /// The direct policy that [`AutoFit::numbers`] describes: learnt from the free rows if constraints deflected others (R10), else from
     /// all.
     pub fn direct_of_free_rows(&self) -> &DirectFit {
-        self.freely.as_ref().unwrap_or(&self.direct)
+        self.free_rows_fit.as_ref().unwrap_or(&self.direct)
     }
 
     /// The rows that move freely, averaged as for learning, if constraints deflected others (R10); else all rows, unchanged.
     pub fn free_rows<'a>(&self, rows: &'a Rows) -> Cow<'a, Rows> {
-        let (Some(free), Some(freely)) = (self.numbers.free, &self.freely) else { return Cow::Borrowed(rows) };
+        let (Some(free), Some(free_rows_fit)) = (self.numbers.free, &self.free_rows_fit) else {
+            return Cow::Borrowed(rows);
+        };
         let rows = rows.averaged();
-        let is_free = near(&freely.model.moving_actions(rows.states().as_view()), rows.velocities(), free.within);
+        let is_free =
+            near(&free_rows_fit.model.moving_actions(rows.states().as_view()), rows.velocities(), free.within);
         Cow::Owned(rows.chosen(&|row| is_free[row]))
     }
 
@@ -192,7 +195,7 @@ impl AutoFit {
     pub fn expected_nupe(&self) -> f64 {
         match (self.takes_slope(), self.reading()) {
             (true, _) => self.slope.report.expected_nupe,
-            (false, Hypothesis::Constrained) if self.freely.is_some() => self.numbers.error_of_free_rows(),
+            (false, Hypothesis::Constrained) if self.free_rows_fit.is_some() => self.numbers.error_of_free_rows(),
             (false, Hypothesis::Constrained) => self.numbers.p_d.max(self.numbers.gap),
             (false, _) => self.numbers.p_d,
         }
@@ -203,49 +206,49 @@ impl AutoFit {
         self.numbers.takes_slope(self.overridden.unwrap_or(self.reading()))
     }
 
-    fn handed_out(&self) -> &dyn LearntPolicy {
+    fn selected_policy(&self) -> &dyn LearntPolicy {
         if self.takes_slope() { &self.slope } else { self.direct_of_free_rows() }
     }
 }
 
 impl Policy for AutoFit {
     fn dim(&self) -> usize {
-        self.handed_out().dim()
+        self.selected_policy().dim()
     }
 
     fn action_into(&self, state: DVectorView<'_, f64>, action: DVectorViewMut<'_, f64>) {
-        self.handed_out().action_into(state, action);
+        self.selected_policy().action_into(state, action);
     }
 
     fn actions(&self, states: DMatrixView<'_, f64>) -> DMatrix<f64> {
-        self.handed_out().actions(states)
+        self.selected_policy().actions(states)
     }
 }
 
 impl LearntPolicy for AutoFit {
     fn potential(&self) -> Option<&dyn Potential> {
-        self.handed_out().potential()
+        self.selected_policy().potential()
     }
 
     fn support(&self, state: DVectorView<'_, f64>) -> f64 {
-        self.handed_out().support(state)
+        self.selected_policy().support(state)
     }
 
     fn action_sd_into(&self, state: DVectorView<'_, f64>, deviation: DVectorViewMut<'_, f64>) -> bool {
-        self.handed_out().action_sd_into(state, deviation)
+        self.selected_policy().action_sd_into(state, deviation)
     }
 
     fn certainty(&self, states: DMatrixView<'_, f64>) -> Certainty {
-        self.handed_out().certainty(states)
+        self.selected_policy().certainty(states)
     }
 
     fn supported(&self, states: DMatrixView<'_, f64>, least: f64) -> Vec<bool> {
-        self.handed_out().supported(states, least)
+        self.selected_policy().supported(states, least)
     }
 
     fn warnings(&self) -> Vec<String> {
         let doubt = self.reading().doubt().map(|doubt| doubt.to_string());
-        doubt.into_iter().chain(self.handed_out().warnings()).collect()
+        doubt.into_iter().chain(self.selected_policy().warnings()).collect()
     }
 }
 

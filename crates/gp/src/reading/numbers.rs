@@ -103,7 +103,7 @@ pub(crate) struct Compared<'a> {
     /// ū.
     pub(crate) direct_unit: f64,
     /// The free rows from which the direct GP was learnt, if not from all.
-    pub(crate) freely: Option<&'a FreeRowsFit>,
+    pub(crate) free_rows_fit: Option<&'a FreeRowsFit>,
     /// The slope GP's error on each group, as a share of the quantity to predict, if it learnt from other rows than `data`.
     pub(crate) shares: Option<&'a [f64]>,
 }
@@ -144,7 +144,7 @@ impl Compared<'_> {
 
     /// (R10).
     fn free(&self) -> Option<FreeRows> {
-        let &FreeRowsFit { ref free, within, along, .. } = self.freely?;
+        let &FreeRowsFit { ref free, within, along, .. } = self.free_rows_fit?;
         let squares = (0..free.len()).filter(|&row| !free[row]).map(|row| self.direct_residual(row).powi(2));
         let (count, sum) = squares.fold((0, 0.0), |(count, sum), square| (count + 1, sum + square));
         let misfit = sum / f64::from(count.max(1)) / within.powi(2);
@@ -179,7 +179,7 @@ impl ReadingNumbers {
             slope: (slope_left_out, &slope.actions(rows.states())),
             direct: (direct_left_out, &direct.moving_actions(rows.states().as_view())),
             direct_unit: direct.unit,
-            freely: None,
+            free_rows_fit: None,
             shares: None,
         })
     }

@@ -17,7 +17,7 @@ pub(crate) struct SlopeAndDirect {
     pub(crate) slope: SlopeOutcome,
     pub(crate) direct: DirectOutcome,
     /// The direct GP of the free rows, which replaces that of all rows.
-    pub(crate) freely: Option<FreeRowsFit>,
+    pub(crate) free_rows_fit: Option<FreeRowsFit>,
 }
 
 /// Errors of predictions of left-out trajectories.
@@ -29,14 +29,14 @@ pub(crate) struct LeftOutErrors {
 impl SlopeAndDirect {
     /// Adds the direct GP of the free rows if it explains the others (R10).
     pub(crate) fn with_free_rows(mut self, families: &[Family]) -> SlopeAndDirect {
-        self.freely = FreeRowsFit::of(families, &self.kept, &self.direct);
-        self.freely_if_it_explains_all()
+        self.free_rows_fit = FreeRowsFit::of(families, &self.kept, &self.direct);
+        self.free_rows_if_they_explain_all()
     }
 
     /// Drops the direct GP of the free rows if the constrained rows contradict it.
-    fn freely_if_it_explains_all(mut self) -> SlopeAndDirect {
-        if self.freely.is_some() && !self.compare_predictions(None).0.free_rows_explain_all() {
-            self.freely = None;
+    fn free_rows_if_they_explain_all(mut self) -> SlopeAndDirect {
+        if self.free_rows_fit.is_some() && !self.compare_predictions(None).0.free_rows_explain_all() {
+            self.free_rows_fit = None;
         }
         self
     }
@@ -47,8 +47,9 @@ impl SlopeAndDirect {
         let both = all.and_then(|all| Some((self.direct.on_all_rows(&all.kept, gp.inducing_rows)?, all)));
         match both {
             Some((direct, OnAllRows { kept, outcome })) => {
-                let freely = self.freely.and_then(|freely| freely.on_all_rows(&kept, gp.inducing_rows));
-                SlopeAndDirect { kept, slope: outcome, direct, freely }.freely_if_it_explains_all()
+                let free_rows_fit =
+                    self.free_rows_fit.and_then(|free_rows_fit| free_rows_fit.on_all_rows(&kept, gp.inducing_rows));
+                SlopeAndDirect { kept, slope: outcome, direct, free_rows_fit }.free_rows_if_they_explain_all()
             }
             None => self,
         }
@@ -57,8 +58,8 @@ impl SlopeAndDirect {
     /// Compares their predictions of left-out trajectories on these rows, with the slope GP of `pushed`, if any, in place of
     /// their own.
     pub(crate) fn compare_predictions(&self, pushed: Option<&Pushed>) -> (ReadingNumbers, LeftOutErrors) {
-        let SlopeAndDirect { kept, slope, direct, freely } = self;
-        let direct = freely.as_ref().map_or(direct, |freely| &freely.direct);
+        let SlopeAndDirect { kept, slope, direct, free_rows_fit } = self;
+        let direct = free_rows_fit.as_ref().map_or(direct, |free_rows_fit| &free_rows_fit.direct);
         let actions = pushed.map(|pushed| pushed.outcome.taken.model.actions(&kept.states));
         let shares = pushed.map(|pushed| pushed.shares(&kept.trajectories()));
         let taken = &pushed.map_or(slope, |pushed| &pushed.outcome).taken;
@@ -70,7 +71,7 @@ impl SlopeAndDirect {
             slope: (&taken.left_out, actions.as_ref().unwrap_or(&taken.actions)),
             direct: (&direct.left_out, &direct.actions),
             direct_unit: direct.fit.model.unit,
-            freely: freely.as_ref(),
+            free_rows_fit: free_rows_fit.as_ref(),
             shares: shares.as_deref(),
         };
         let errors = LeftOutErrors { trajectories: compared.errors(), rows: compared.rows() };
