@@ -40,7 +40,7 @@ struct Equation<'a> {
 }
 
 /// At most `most` of the equations that belong to these rows, as indices.
-fn few(of_rows: &[usize], rows: &Rows, most: usize) -> Vec<usize> {
+fn thinned_equations(of_rows: &[usize], rows: &Rows, most: usize) -> Vec<usize> {
     let trajectory = |&at: &usize| rows.indices()[of_rows[at]].trajectory;
     let all: Vec<usize> = (0..of_rows.len()).collect();
     thinned(all.chunk_by(|a, b| trajectory(a) == trajectory(b)), most, || MIDDLE)
@@ -95,7 +95,7 @@ impl Stretches {
         let mean_square = sum / count as f64;
         let moving = || all().filter(|equation| equation.part.powi(2) > LEAST * mean_square);
         let of_rows: Vec<usize> = moving().map(|equation| equation.row).collect();
-        let mut taken: BTreeSet<usize> = few(&of_rows, rows, most).into_iter().collect();
+        let mut taken: BTreeSet<usize> = thinned_equations(&of_rows, rows, most).into_iter().collect();
         taken.extend(also);
         let found = of_rows.len();
         let samples = of_rows.chunk_by(|a, b| a == b).count();
@@ -137,7 +137,7 @@ impl Stretches {
 
     fn dropped(&self, rows: &Rows, thinned: usize) -> RowsDropped {
         let of = |dropped: RowsDropped, &index: &SampleIndex| {
-            let stretch = self.at(index);
+            let stretch = self.stretch_of(index);
             RowsDropped {
                 in_no_stretch: dropped.in_no_stretch + usize::from(stretch.is_none()),
                 contradicted: dropped.contradicted + usize::from(stretch.is_some_and(Stretch::is_contradicted)),
@@ -150,7 +150,7 @@ impl Stretches {
     /// The directions (S41) of each sample.
     fn free(&self, through: &Through, rows: &Rows) -> Vec<Vec<Free>> {
         let of = |row: usize| {
-            let stretch = self.at(rows.indices()[row]);
+            let stretch = self.stretch_of(rows.indices()[row]);
             stretch.map_or_else(Vec::new, |of| through.free(rows, row, &of.directions, &of.lengths))
         };
         (0..rows.len()).into_par_iter().map(of).collect()
@@ -163,7 +163,7 @@ impl Stretches {
         free: Option<&'a [Vec<Free>]>,
         row: usize,
     ) -> impl Iterator<Item = Equation<'a>> {
-        let stretch = self.at(rows.indices()[row]);
+        let stretch = self.stretch_of(rows.indices()[row]);
         let recorded = if free.is_none() { stretch } else { None };
         let recorded = recorded.into_iter().flat_map(|of| of.directions.column_iter().zip(of.lengths.iter().copied()));
         let free =
@@ -180,12 +180,12 @@ impl Stretches {
     }
 
     /// The stretch that contains a sample.
-    fn at(&self, index: SampleIndex) -> Option<&Stretch> {
-        Some(&self.all[self.place(index)?])
+    fn stretch_of(&self, index: SampleIndex) -> Option<&Stretch> {
+        Some(&self.all[self.position_of(index)?])
     }
 
     /// Index of the stretch that contains a sample.
-    pub(crate) fn place(&self, index: SampleIndex) -> Option<usize> {
+    pub(crate) fn position_of(&self, index: SampleIndex) -> Option<usize> {
         let before = |stretch: &Stretch| (stretch.trajectory, stretch.samples.1) < (index.trajectory, index.sample);
         let place = self.all.partition_point(before);
         let next = self.all.get(place)?;
@@ -194,20 +194,21 @@ impl Stretches {
 
     /// Root mean square of the pushes A⁺b, in units of the state per second.
     pub(crate) fn push(&self) -> f64 {
-        let (squares, count) =
-            self.right().fold((0.0, 0), |(sum, count), stretch| (sum + stretch.push.norm_squared(), count + 1));
+        let (squares, count) = self
+            .uncontradicted()
+            .fold((0.0, 0), |(sum, count), stretch| (sum + stretch.push.norm_squared(), count + 1));
         (squares / f64::from(count)).sqrt()
     }
 
     fn pushes(&self) -> Pushes {
         let columns = |of: fn(&Stretch) -> &DVector<f64>| {
-            DMatrix::from_columns(&self.right().map(of).cloned().collect::<Vec<_>>())
+            DMatrix::from_columns(&self.uncontradicted().map(of).cloned().collect::<Vec<_>>())
         };
         Pushes { states: columns(|stretch| &stretch.middle), velocities: columns(|stretch| &stretch.push) }
     }
 
     /// The stretches that are not contradicted.
-    fn right(&self) -> impl Iterator<Item = &Stretch> {
+    fn uncontradicted(&self) -> impl Iterator<Item = &Stretch> {
         self.all.iter().filter(|stretch| !stretch.is_contradicted())
     }
 
@@ -218,7 +219,7 @@ impl Stretches {
 
     /// Mean square of the pushes along normals, relative to that of noise: about 1 if nothing pushes.
     fn significance(&self) -> f64 {
-        let all = self.right().map(|stretch| stretch.significance);
+        let all = self.uncontradicted().map(|stretch| stretch.significance);
         let (squares, normals) = all.fold((0.0, 0.0), |(squares, normals), (square, count)| {
             let count = count as f64;
             (squares + square.min(MOST_OF_ONE * count), normals + count)
