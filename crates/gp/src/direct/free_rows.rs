@@ -55,8 +55,8 @@ impl FreeRowsFit {
         for _ in 0..ROUNDS {
             let direct = found.as_ref().map_or(all, |found| &found.direct);
             let errors: Vec<f64> = direct.left_out.residuals.row_iter().map(|row| row.norm_squared()).collect();
-            let limit = limit(&errors);
-            if found.is_none() && !worth_it(&errors, limit) {
+            let limit = free_error_limit(&errors);
+            if found.is_none() && !deflections_dominate(&errors, limit) {
                 return None;
             }
             let free: Vec<bool> = errors.iter().map(|&error| error <= limit).collect();
@@ -85,24 +85,24 @@ impl FreeRowsFit {
     /// The same model on all rows, those near its predictions free, through at most `most` of them; `None` without a Cholesky factor.
     pub(crate) fn on_all_rows(&self, all: &Kept, most: usize) -> Option<FreeRowsFit> {
         let within = self.within;
-        let free = near(&self.direct.fit.model.moving_actions(all.states.as_view()), all.observed(), within);
+        let free = within_distance(&self.direct.fit.model.moving_actions(all.states.as_view()), all.observed(), within);
         let direct = self.direct.on_all_rows(&without_deflected(all, &free), most)?;
         Some(FreeRowsFit::new(direct, free, within, all))
     }
 }
 
 /// Whether each velocity, (n, M), is within a distance of its prediction.
-pub(crate) fn near(predicted: &DMatrix<f64>, observed: &DMatrix<f64>, within: f64) -> Vec<bool> {
+pub(crate) fn within_distance(predicted: &DMatrix<f64>, observed: &DMatrix<f64>, within: f64) -> Vec<bool> {
     predicted.column_iter().zip(observed.column_iter()).map(|(expected, u)| (u - expected).norm() <= within).collect()
 }
 
-fn limit(errors: &[f64]) -> f64 {
+fn free_error_limit(errors: &[f64]) -> f64 {
     let mut sorted = errors.to_vec();
     sorted.sort_by(f64::total_cmp);
     (USUAL * sorted[(QUANTILE * sorted.len() as f64) as usize]).max(LEAST)
 }
 
-fn worth_it(errors: &[f64], limit: f64) -> bool {
+fn deflections_dominate(errors: &[f64], limit: f64) -> bool {
     let above: f64 = errors.iter().filter(|&&error| error > limit).sum();
     above >= WORTH * errors.iter().sum::<f64>()
 }

@@ -7,7 +7,7 @@ use rand::Rng;
 use serde::{Deserialize, Serialize};
 
 use crate::direct::direct_gp::{DirectFit, fit_direct};
-use crate::direct::free_rows::near;
+use crate::direct::free_rows::within_distance;
 use crate::kernel::family::Family;
 use crate::left_out::comparison::{difference, much_better};
 use crate::reading::Hypothesis;
@@ -186,8 +186,11 @@ impl AutoFit {
             return Cow::Borrowed(rows);
         };
         let rows = rows.averaged();
-        let is_free =
-            near(&free_rows_fit.model.moving_actions(rows.states().as_view()), rows.velocities(), free.within);
+        let is_free = within_distance(
+            &free_rows_fit.model.moving_actions(rows.states().as_view()),
+            rows.velocities(),
+            free.within,
+        );
         Cow::Owned(rows.chosen(&|row| is_free[row]))
     }
 

@@ -79,7 +79,7 @@ impl Pushed {
         let weights = some.of_stretches.as_ref().map(|of| &of.weights);
         let mut sums = vec![(0.0, 0_usize); stretches.all.len()];
         for (row, residual) in residuals.into_iter().enumerate() {
-            let Some(stretch) = stretches.place(some.indices[row]) else { continue };
+            let Some(stretch) = stretches.position_of(some.indices[row]) else { continue };
             sums[stretch].0 += residual.powi(2) / weights.map_or(1.0, |weights| weights[row]);
             sums[stretch].1 += 1;
         }
