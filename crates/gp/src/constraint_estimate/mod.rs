@@ -128,17 +128,17 @@ impl Search<'_> {
     /// Sum of (S28) and (S38) over all movements.
     fn cost(&self, parts: &[Parts]) -> f64 {
         let alone = PARAMETER * self.rows.dim() as f64;
-        let of = |parts: &Parts| {
+        let movement_cost = |parts: &Parts| {
             let within: usize = parts.found.iter().map(|part| part.end - part.begin).sum();
             let costs = parts.found.iter().map(|part| parts.movement.cheapest(part.begin, part.end).0.0);
             costs.sum::<f64>() + alone * (parts.rows.len() - within) as f64
         };
-        parts.iter().map(of).sum()
+        parts.iter().map(movement_cost).sum()
     }
 
     /// The parts of each movement, or of each section between known switches; `least` is the minimum variance of the policy.
     fn parts(&self, least: f64) -> Vec<Parts> {
-        let of = |movement: &&[usize]| {
+        let parts = |movement: &&[usize]| {
             let known = self.rows.labels().is_some();
             let rows = if known { movement.to_vec() } else { evenly(movement, MOST_SAMPLES) };
             let movement = self.movement(&rows, least, SHARED);
@@ -150,7 +150,7 @@ impl Search<'_> {
             };
             Parts { rows, movement, found }
         };
-        self.movements.par_iter().map(of).collect()
+        self.movements.par_iter().map(parts).collect()
     }
 
     /// The row at which the part after a switch begins: the best of all rows between the two that were searched.
@@ -183,10 +183,10 @@ impl Search<'_> {
 
     /// The policy's variance that all parts leave, as the median over them; `None` if there are none.
     fn left(&self, parts: &[Parts]) -> Option<f64> {
-        let of = |of: &Parts| -> Vec<f64> {
+        let medians = |of: &Parts| -> Vec<f64> {
             of.found.iter().filter_map(|part| upper_median(of.movement.left(part))).collect()
         };
-        upper_median(parts.iter().flat_map(of).collect()).map(|square| (square - self.noise).max(0.0))
+        upper_median(parts.iter().flat_map(medians).collect()).map(|square| (square - self.noise).max(0.0))
     }
 
     fn stretches(&self, parts: &[Parts], least: f64) -> Vec<StretchEstimate> {

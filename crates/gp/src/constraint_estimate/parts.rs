@@ -17,10 +17,10 @@ pub(super) struct Parts {
 /// Cost (S38) of a constraint in each space, from the parts that have one.
 pub(super) fn rarity_of(parts: &[Parts], spaces: usize) -> Vec<f64> {
     let constrained = |part: &&Part<StretchKind>| part.kind != StretchKind::Free;
-    let of = |of: &Parts| -> Vec<Vec<f64>> {
+    let costs = |of: &Parts| -> Vec<Vec<f64>> {
         of.found.iter().filter(constrained).map(|part| of.movement.costs_in_spaces(part)).collect()
     };
-    rarity(&parts.par_iter().flat_map_iter(of).collect::<Vec<_>>(), spaces)
+    rarity(&parts.par_iter().flat_map_iter(costs).collect::<Vec<_>>(), spaces)
 }
 
 impl Parts {

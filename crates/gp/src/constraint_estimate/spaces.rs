@@ -12,8 +12,8 @@ pub(super) fn rarity(costs: &[Vec<f64>], spaces: usize) -> Vec<f64> {
         let mut counts = vec![1.0; spaces];
         for costs in costs {
             let least = costs.iter().copied().fold(f64::INFINITY, f64::min);
-            let of = |(cost, share): (&f64, &f64)| share * (0.5 * (least - cost)).exp();
-            let likelihoods: Vec<f64> = costs.iter().zip(&shares).map(of).collect();
+            let likelihood = |(cost, share): (&f64, &f64)| share * (0.5 * (least - cost)).exp();
+            let likelihoods: Vec<f64> = costs.iter().zip(&shares).map(likelihood).collect();
             let all: f64 = likelihoods.iter().sum();
             counts.iter_mut().zip(&likelihoods).for_each(|(count, likelihood)| *count += likelihood / all);
         }

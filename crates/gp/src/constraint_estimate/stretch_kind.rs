@@ -86,11 +86,11 @@ impl Movement {
     /// (S28) of a part in each space, without the cost of rarity; infinite if no rank is possible.
     pub(super) fn costs_in_spaces(&self, part: &Part<StretchKind>) -> Vec<f64> {
         let ends = (part.begin, part.end);
-        let of = |samples: &ProjectedSamples| {
+        let cost = |samples: &ProjectedSamples| {
             let directions = samples.directions(ends.0, ends.1, self.disagreement.noise);
             self.best_rank(samples, &directions, ends).map(|(cost, _)| cost)
         };
-        self.projected.iter().map(|samples| samples.as_ref().and_then(of).unwrap_or(f64::INFINITY)).collect()
+        self.projected.iter().map(|samples| samples.as_ref().and_then(cost).unwrap_or(f64::INFINITY)).collect()
     }
 
     /// Cost of the parameters of A with `rank` rows, and of b unless it is 0. It is less if velocities are known better than the policy,
@@ -147,9 +147,10 @@ impl Costs for MovementCosts<'_> {
             return 0.0;
         }
         let dim = self.movement.disagreement.of.nrows();
-        let of = |rank| self.left.at_least(begin, rank - 1) + self.movement.price((begin, end), dim, rank) + SEGMENT;
+        let least_cost =
+            |rank| self.left.at_least(begin, rank - 1) + self.movement.price((begin, end), dim, rank) + SEGMENT;
         let possible = (1..=dim).filter(|rank| end - begin + rank >= dim + SPARE);
-        possible.map(of).fold(self.movement.disagreement.square(begin, end) + SEGMENT, f64::min)
+        possible.map(least_cost).fold(self.movement.disagreement.square(begin, end) + SEGMENT, f64::min)
     }
 }
 

@@ -177,12 +177,12 @@ mod tests {
         let mut curvature = Curvature::default();
         let searches = [1.0, factor].map(|steepness| {
             let mut evaluations = 0;
-            let of = |x: &DVector<f64>| {
+            let evidence = |x: &DVector<f64>| {
                 evaluations += 1;
                 let gradient = steepness * (&bowl * (x - &least));
                 Some(Evidence { value: 0.5 * gradient.dot(&(x - &least)), gradient })
             };
-            let found = minimise(of, &start, &bounds, LIMITS, &mut curvature);
+            let found = minimise(evidence, &start, &bounds, LIMITS, &mut curvature);
             curvature.scale(factor);
             (found, evaluations)
         });

@@ -99,8 +99,8 @@ impl<C: Covariance> Leaving<'_, C> {
 
     /// By I − BᵀB, (m, m), with Woodbury's identity: (I − BBᵀ)⁻¹ = I + B (I − BᵀB)⁻¹ Bᵀ.
     fn many(&self, rows: &[usize], products: Products<'_>) -> Option<Group> {
-        let of = |begin, count| products.map(|products| products.rows(begin, count));
-        let own = |begin: usize, part: &[usize]| self.own(part, of(begin, part.len()));
+        let products_of = |begin, count| products.map(|products| products.rows(begin, count));
+        let own = |begin: usize, part: &[usize]| self.own(part, products_of(begin, part.len()));
         let count = self.spectrum.singular.len();
         let mut rest = DMatrix::identity(count, count);
         let mut along = DMatrix::zeros(count, self.coefficients.ncols());

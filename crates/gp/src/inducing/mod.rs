@@ -149,8 +149,8 @@ mod tests {
 
         /// κσ² and σ² for every row.
         fn noises(&self, induced: &Induced) -> (Vec<f64>, Vec<f64>) {
-            let of = |noise: f64| self.noise_weights.iter().map(|weight| weight * (noise + NOISE_FLOOR)).collect();
-            (of(raised(induced.noise, induced.kappa)), of(induced.noise))
+            let of_rows = |noise: f64| self.noise_weights.iter().map(|weight| weight * (noise + NOISE_FLOOR)).collect();
+            (of_rows(raised(induced.noise, induced.kappa)), of_rows(induced.noise))
         }
 
         fn targets(&self) -> Targets {
@@ -239,8 +239,8 @@ mod tests {
             for rows in &drawn.groups {
                 let others: Vec<usize> = all.iter().copied().filter(|row| !rows.contains(row)).collect();
                 let (across, of_others) = (select(&approximate, rows, &others), select(&approximate, &others, &others));
-                let of = |of: &[f64]| others.iter().map(|&row| of[row]).collect::<Vec<_>>();
-                let conditions = (&drawn.targets.select_rows(&others), &*of(&noise), &*of(&own));
+                let take_others = |of: &[f64]| others.iter().map(|&row| of[row]).collect::<Vec<_>>();
+                let conditions = (&drawn.targets.select_rows(&others), &*take_others(&noise), &*take_others(&own));
                 let (mean, error) = predicted(&select(&approximate, rows, rows), &across, &of_others, conditions);
                 let residuals = drawn.targets.select_rows(rows) - mean;
                 prop_assert!((residuals - induced.left_out.residuals.select_rows(rows)).amax() < 1e-6);

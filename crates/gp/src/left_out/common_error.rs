@@ -82,7 +82,7 @@ mod tests {
         #[test]
         fn only_rows_of_one_component_count(values in prop::collection::vec(0.1f64..2.0, 8), flipped in any::<bool>()) {
             let residuals = DMatrix::from_row_slice(8, 1, &values);
-            let of = |n: &DMatrix<f64>, residuals: &DMatrix<f64>, groups: &[Vec<usize>]| {
+            let error = |n: &DMatrix<f64>, residuals: &DMatrix<f64>, groups: &[Vec<usize>]| {
                 let left_out =
                     LeftOutPredictions { residuals: residuals.clone(), variances: vec![1.0; 8], r_squared: 0.0, z_squared: 1.0 };
                 common_error(&left_out, n, (0.5, &[1.0; 8]), groups)
@@ -90,15 +90,15 @@ mod tests {
             let same = DMatrix::from_fn(3, 8, |k, _| if k == 0 { 1.0 } else { 0.0 });
             let turned = DMatrix::from_fn(3, 8, |k, row| if k == row % 2 { 1.0 } else { 0.0 });
             let pairs: Vec<Vec<usize>> = (0..4).map(|at| vec![2 * at, 2 * at + 1]).collect();
-            prop_assert_eq!(of(&turned, &residuals, &pairs), 0.0);
-            prop_assert_eq!(of(&same, &residuals, &(0..8).map(|row| vec![row]).collect::<Vec<_>>()), 0.0);
+            prop_assert_eq!(error(&turned, &residuals, &pairs), 0.0);
+            prop_assert_eq!(error(&same, &residuals, &(0..8).map(|row| vec![row]).collect::<Vec<_>>()), 0.0);
             // If a sample has several rows, the partner is the row of the next sample along the same component.
             let all = [(0..8).collect::<Vec<_>>()];
-            prop_assert!(of(&turned, &residuals, &all) > 0.0);
+            prop_assert!(error(&turned, &residuals, &all) > 0.0);
             let sign = |row: usize| if flipped && row.is_multiple_of(3) { -1.0 } else { 1.0 };
             let other_signs = DMatrix::from_fn(3, 8, |k, row| sign(row) * same[(k, row)]);
             let other_residuals = DMatrix::from_fn(8, 1, |row, _| sign(row) * residuals[(row, 0)]);
-            prop_assert!((of(&same, &residuals, &all) - of(&other_signs, &other_residuals, &all)).abs() < 1e-12);
+            prop_assert!((error(&same, &residuals, &all) - error(&other_signs, &other_residuals, &all)).abs() < 1e-12);
         }
     }
 }

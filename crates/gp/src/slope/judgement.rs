@@ -153,14 +153,14 @@ struct CovariancesAtRows {
 
 fn covariances_at_rows(taken: &Candidate, kept: &Kept, data: &SlopeData) -> CovariancesAtRows {
     let at = every_so_many(kept.states.ncols(), STATES);
-    let of = |rows: &[usize]| {
+    let sums_over = |rows: &[usize]| {
         let states: Vec<DVectorView<'_, f64>> = rows.iter().map(|&row| kept.states.column(row)).collect();
         let posterior = taken.model.covariances(&states);
         let traces: Vec<f64> = posterior.iter().map(DMatrix::trace).collect();
         let prior: DMatrix<f64> = states.iter().map(|state| taken.model.prior_covariance(*state)).sum();
         (traces, posterior.into_iter().sum::<DMatrix<f64>>(), prior)
     };
-    let parts: Vec<_> = at.par_chunks(TOGETHER).map(of).collect();
+    let parts: Vec<_> = at.par_chunks(TOGETHER).map(sums_over).collect();
     let moving = taken.model.expansion().moving();
     let (mut posterior, mut prior) = (DMatrix::zeros(moving, moving), DMatrix::zeros(moving, moving));
     let mut traces = Vec::with_capacity(at.len());

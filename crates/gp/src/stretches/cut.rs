@@ -32,7 +32,7 @@ impl Cut {
         parts: &[&[usize]],
         (switches, noise): (Switches, f64),
     ) -> Vec<Cut> {
-        let of = |part: &&[usize]| {
+        let cut = |part: &&[usize]| {
             let known = rows.labels().is_some();
             let few = if known { part.to_vec() } else { evenly(part, MOST_SAMPLES) };
             let velocities = view.velocities.select_columns(&few);
@@ -44,7 +44,7 @@ impl Cut {
             let jumps = found.len() > 1 && jumps(&view.velocities.select_columns(&evenly(part, MOST_FOR_JUMPS)), noise);
             Cut { few, found, jumps }
         };
-        parts.par_iter().map(of).collect()
+        parts.par_iter().map(cut).collect()
     }
 
     /// Whether constraints switch within so many movements that several segments of one movement are separate stretches. Otherwise they

@@ -126,7 +126,7 @@ impl Stretches {
         for (row, index) in rows.indices().iter().enumerate() {
             of_trajectories.entry(index.trajectory).or_default().push(row);
         }
-        let of = |stretch: &Stretch| {
+        let unpushed = |stretch: &Stretch| {
             let rank = stretch.whole.or(through.as_ref().map(|_| stretch.rank))?;
             let own = of_trajectories[&stretch.trajectory].iter().copied();
             let inside: Vec<usize> = own.filter(|&row| stretch.holds(rows.indices()[row])).collect();
@@ -142,7 +142,7 @@ impl Stretches {
             })
         };
         let other = |stretch: &Stretch| through.as_ref().map(|_| stretch.clone());
-        let all = self.all.iter().filter_map(|stretch| of(stretch).or_else(|| other(stretch))).collect();
+        let all = self.all.iter().filter_map(|stretch| unpushed(stretch).or_else(|| other(stretch))).collect();
         Stretches { all, noise: *noise, pushed: false, through: through.clone() }
     }
 }
@@ -159,8 +159,8 @@ impl Stretch {
 
 /// Splits `at`, all rows in order, by movement, and, if labels mark switches, at these.
 pub(crate) fn parts<'a>(rows: &Rows, at: &'a [usize]) -> Vec<&'a [usize]> {
-    let of = |row: usize| (rows.indices()[row].trajectory, rows.labels().map(|labels| labels[row]));
-    at.chunk_by(|&a, &b| of(a) == of(b)).collect()
+    let section = |row: usize| (rows.indices()[row].trajectory, rows.labels().map(|labels| labels[row]));
+    at.chunk_by(|&a, &b| section(a) == section(b)).collect()
 }
 
 /// The mean of the columns, and the columns minus the mean.

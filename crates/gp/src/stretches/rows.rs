@@ -136,7 +136,7 @@ impl Stretches {
     }
 
     fn dropped(&self, rows: &Rows, thinned: usize) -> RowsDropped {
-        let of = |dropped: RowsDropped, &index: &SampleIndex| {
+        let count = |dropped: RowsDropped, &index: &SampleIndex| {
             let stretch = self.stretch_of(index);
             RowsDropped {
                 in_no_stretch: dropped.in_no_stretch + usize::from(stretch.is_none()),
@@ -144,16 +144,16 @@ impl Stretches {
                 ..dropped
             }
         };
-        rows.indices().iter().fold(RowsDropped { thinned, ..RowsDropped::default() }, of)
+        rows.indices().iter().fold(RowsDropped { thinned, ..RowsDropped::default() }, count)
     }
 
     /// The directions (S41) of each sample.
     fn free(&self, through: &Through, rows: &Rows) -> Vec<Vec<Free>> {
-        let of = |row: usize| {
+        let directions = |row: usize| {
             let stretch = self.stretch_of(rows.indices()[row]);
             stretch.map_or_else(Vec::new, |of| through.free(rows, row, &of.directions, &of.lengths))
         };
-        (0..rows.len()).into_par_iter().map(of).collect()
+        (0..rows.len()).into_par_iter().map(directions).collect()
     }
 
     /// The equations of one sample: (S22), or (S41) for each of its `free` directions.
@@ -266,12 +266,12 @@ mod tests {
             noise in 0.0f64..1.9,
             apparent in 41.0f64..1e9,
         ) {
-            let of = |pushed: usize| {
+            let is_significant = |pushed: usize| {
                 let square = |at: usize| normals as f64 * if at < pushed { apparent } else { noise };
                 let all = (0..count).map(|at| stretch((square(at), normals))).collect();
                 Stretches { all, noise: 1.0, pushed: true, through: None }.push_is_significant()
             };
-            prop_assert!(!of(0) && !of(1) && of(count.div_ceil(10)) && of(count));
+            prop_assert!(!is_significant(0) && !is_significant(1) && is_significant(count.div_ceil(10)) && is_significant(count));
         }
     }
     proptest! {

@@ -77,8 +77,8 @@ impl Costs for PlaneCosts {
     }
 
     fn at_least(&self, begin: usize, end: usize) -> f64 {
-        let of = |rank| self.of_rank(rank, end - begin, self.left.at_least(begin, rank));
-        (0..self.sums.dim).filter_map(of).fold(f64::INFINITY, f64::min)
+        let at_rank = |rank| self.of_rank(rank, end - begin, self.left.at_least(begin, rank));
+        (0..self.sums.dim).filter_map(at_rank).fold(f64::INFINITY, f64::min)
     }
 }
 

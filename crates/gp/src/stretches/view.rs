@@ -38,8 +38,8 @@ impl<'a> View<'a> {
         let trajectory = |row: &usize| rows.indices()[*row].trajectory;
         let own = &rows.task_spaces()[space];
         let (directions, _) = own.gains()?;
-        let of = |part: &[usize]| Some((trajectory(&part[0]), own.evening(&directions, part)?));
-        let evening = all.chunk_by(|a, b| trajectory(a) == trajectory(b)).map(of).collect::<Option<_>>()?;
+        let evening_of = |part: &[usize]| Some((trajectory(&part[0]), own.evening(&directions, part)?));
+        let evening = all.chunk_by(|a, b| trajectory(a) == trajectory(b)).map(evening_of).collect::<Option<_>>()?;
         let through = Through { space, evening };
         let velocities = rows.velocities().column_iter().enumerate();
         let velocities: Vec<DVector<f64>> = velocities.map(|(row, u)| through.jacobian(rows, row) * u).collect();
@@ -89,12 +89,12 @@ impl Through {
         let matrix = complement(directions).tr_mul(&jacobian);
         let size = matrix.norm_squared() / matrix.nrows() as f64;
         let along = directions.tr_mul(&jacobian);
-        let of = |direction: DVectorView<'_, f64>| {
+        let free = |direction: DVectorView<'_, f64>| {
             let parts = &along * direction;
             let tilt = parts.iter().zip(lengths).map(|(part, length)| (part / length).powi(2)).sum::<f64>();
             Free { direction: direction.into_owned(), length: (size / tilt).sqrt() }
         };
-        null_space(&matrix).column_iter().map(of).collect()
+        null_space(&matrix).column_iter().map(free).collect()
     }
 }
 
@@ -171,7 +171,7 @@ mod tests {
             let rank = 1 + rank % (moved.ncols().min(n) - 1);
             let (wanted, mut velocities) = (draw(n, 3 * COUNT), DMatrix::zeros(n, 3 * COUNT));
             // Amplification of rounding at nearly singular poses.
-            let of = |matrix: &DMatrix<f64>| {
+            let condition_of = |matrix: &DMatrix<f64>| {
                 let lengths = matrix.singular_values();
                 lengths.max() / lengths.min()
             };
@@ -181,7 +181,7 @@ mod tests {
                 let bound = draw(rank, 1) * f64::from(u8::from(pushed));
                 for (at, jacobian) in jacobians.iter().enumerate().skip(movement * COUNT).take(COUNT) {
                     let own = &matrix * jacobian;
-                    condition = condition.max(of(&own) * of(&moved.tr_mul(jacobian)));
+                    condition = condition.max(condition_of(&own) * condition_of(&moved.tr_mul(jacobian)));
                     let inverse = (&own * own.transpose()).try_inverse().unwrap();
                     let off = &own * wanted.column(at) - bound.column(0);
                     velocities.set_column(at, &(wanted.column(at) - own.tr_mul(&(inverse * off))));

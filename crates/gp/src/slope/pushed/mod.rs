@@ -193,8 +193,8 @@ impl Pushed {
         };
         let all = share(&data.targets.groups.concat());
         let own = self.kept.trajectories();
-        let of =
+        let share_of =
             |trajectory: &usize| own.binary_search(trajectory).map_or(all, |group| share(&data.targets.groups[group]));
-        trajectories.iter().map(of).collect()
+        trajectories.iter().map(share_of).collect()
     }
 }
