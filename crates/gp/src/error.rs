@@ -25,7 +25,7 @@ pub enum GpError {
         expected: usize,
     },
     /// A number is NaN or infinite, or a variance is negative.
-    #[error("row {row}: a {what} of {value} cannot be; leave the row out")]
+    #[error("row {row}: {what} {value} is not valid; leave the row out")]
     Value {
         /// State, velocity or variance.
         what: &'static str,
@@ -71,7 +71,7 @@ pub enum GpError {
         found: usize,
     },
     /// There are too few rows for a model.
-    #[error("only {found} rows can be used, at least {needed} are needed; record more or less noisily")]
+    #[error("only {found} rows can be used, at least {needed} are needed; record more samples or reduce noise")]
     TooFewRows {
         /// Number of remaining rows.
         found: usize,

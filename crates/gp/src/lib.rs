@@ -58,7 +58,7 @@
 //! - **Kinks in many dimensions** are learnt slowly; the held-out R² is then low and [`TrustReport::doubts`] says so.
 //! - **More than 1,500 rows** are thinned, because time grows with their cube ([`SlopeGp::max_rows`]). With [`SlopeGp::inducing_rows`], up
 //!   to 64 times as many rows (at most 32,000) are also used, if that predicts left-out movements better.
-//! - [`GpError`]: no motion, fewer than three usable trajectories, or too few rows.
+//! - [`GpError`]: no motion, too few rows, or of three or more trajectories, fewer than three with usable rows.
 
 mod constraint_estimate;
 mod dimension;

@@ -111,6 +111,6 @@ fn check_scales(mut scales: impl Iterator<Item = f64>) -> Result<(), GpError> {
     if scales.all(|scale| scale > 1e-9 && scale < 1e9) {
         Ok(())
     } else {
-        Err(stored("a block has a scale that cannot be"))
+        Err(stored("a block's scale is not between 1e-9 and 1e9"))
     }
 }
