@@ -3,7 +3,7 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::SmoothingError;
 use crate::error::require;
-use crate::piecewise::polynomials::Polynomials;
+use crate::piecewise::polynomials::OrthonormalPolynomials;
 
 /// Savitzky–Golay filter: replaces each sample by the value of the polynomial that best fits its neighbours.
 ///
@@ -44,13 +44,13 @@ impl SavitzkyGolay {
         let n = trajectory.n_samples();
         let window = self.window.min(n);
         let degrees = self.degree + 1;
-        let even = Polynomials::even(window, degrees);
+        let even = OrthonormalPolynomials::even(window, degrees);
         let mut states = DMatrix::zeros(trajectory.dim(), n);
         let mut weights = DVector::zeros(window);
         for i in 0..n {
             let first = i.saturating_sub(window / 2).min(n - window);
             let around = trajectory.states().columns(first, window);
-            let uneven = trajectory.times().map(|times| Polynomials::at(&times[first..][..window], degrees));
+            let uneven = trajectory.times().map(|times| OrthonormalPolynomials::at(&times[first..][..window], degrees));
             weigh(uneven.as_ref().unwrap_or(&even), i - first, &mut weights);
             around.mul_to(&weights, &mut states.column_mut(i));
         }
@@ -69,7 +69,7 @@ impl SavitzkyGolay {
 }
 
 /// Weights of a window's samples, (window), for the value at its sample i: Q Q_iᵀ.
-fn weigh(q: &Polynomials, i: usize, weights: &mut DVector<f64>) {
+fn weigh(q: &OrthonormalPolynomials, i: usize, weights: &mut DVector<f64>) {
     for (j, weight) in weights.iter_mut().enumerate() {
         *weight = q.values(j).iter().zip(q.values(i)).map(|(a, b)| a * b).sum();
     }

@@ -13,13 +13,13 @@ const JUMP: f64 = 0.01;
 /// Exact for polynomials of a degree below that number, at any times. Nothing is smoothed. The time is O(N (p² + n p)) for p
 /// points.
 pub fn slopes(movement: &Trajectory, points: usize) -> DMatrix<f64> {
-    Polynomials::new(movement, points).slopes(|nearest, _| nearest)
+    InterpolatingPolynomials::new(movement, points).slopes(|nearest, _| nearest)
 }
 
 /// As [`slopes`], (n, N), in positions per second. If the velocity jumps among those samples, the polynomial passes through as
 /// many samples before or after the jump instead.
 pub fn slopes_between_switches(movement: &Trajectory, points: usize) -> DMatrix<f64> {
-    let polynomials = Polynomials::new(movement, points);
+    let polynomials = InterpolatingPolynomials::new(movement, points);
     let (points, last) = (polynomials.points, movement.n_samples() - polynomials.points);
     // Squared highest divided difference of the samples from each on: large where the velocity jumps.
     let bends = polynomials.squared_bends();
@@ -32,14 +32,14 @@ pub fn slopes_between_switches(movement: &Trajectory, points: usize) -> DMatrix<
 }
 
 /// Polynomials through `points` consecutive samples.
-struct Polynomials<'a> {
+struct InterpolatingPolynomials<'a> {
     movement: &'a Trajectory,
     points: usize,
 }
 
-impl Polynomials<'_> {
-    fn new(movement: &Trajectory, points: usize) -> Polynomials<'_> {
-        Polynomials { movement, points: points.clamp(2, movement.n_samples()) }
+impl InterpolatingPolynomials<'_> {
+    fn new(movement: &Trajectory, points: usize) -> InterpolatingPolynomials<'_> {
+        InterpolatingPolynomials { movement, points: points.clamp(2, movement.n_samples()) }
     }
 
     /// x_i as n numbers.

@@ -2,7 +2,7 @@
 
 /// Polynomials of degree 0, 1, … that are orthonormal on given times: Q and Q' in (S15).
 #[derive(Debug, Clone)]
-pub(crate) struct Polynomials {
+pub(crate) struct OrthonormalPolynomials {
     degrees: usize,
     /// Q_ik at `i * degrees + k`.
     values: Vec<f64>,
@@ -10,7 +10,7 @@ pub(crate) struct Polynomials {
     slopes: Vec<f64>,
 }
 
-impl Polynomials {
+impl OrthonormalPolynomials {
     /// Polynomials on times τ in [−1, 1], by two passes of modified Gram–Schmidt on 1, τ, τ², …; as many degrees as
     /// requested, but at most one per time.
     pub(crate) fn on(tau: &[f64], degrees: usize) -> Self {
@@ -37,7 +37,7 @@ impl Polynomials {
                 *power *= t;
             }
         }
-        Polynomials { degrees, values: by_sample(&values, tau.len()), slopes: by_sample(&slopes, tau.len()) }
+        OrthonormalPolynomials { degrees, values: by_sample(&values, tau.len()), slopes: by_sample(&slopes, tau.len()) }
     }
 
     /// Polynomials on ascending times in seconds, scaled by half their span about its middle.
@@ -117,7 +117,7 @@ mod tests {
     proptest! {
         #[test]
         fn columns_are_orthonormal(tau in times(), degrees in 1..7usize) {
-            let q = Polynomials::on(&tau, degrees);
+            let q = OrthonormalPolynomials::on(&tau, degrees);
             for k in 0..q.degrees {
                 for l in 0..=k {
                     let product: f64 = (0..tau.len()).map(|i| q.values(i)[k] * q.values(i)[l]).sum();
@@ -129,7 +129,7 @@ mod tests {
         /// A polynomial of the highest degree and its slope are reproduced.
         #[test]
         fn a_polynomial_and_its_slope_are_reproduced(tau in times(), factors in vec(-2.0..2.0f64, 1..7)) {
-            let q = Polynomials::on(&tau, factors.len());
+            let q = OrthonormalPolynomials::on(&tau, factors.len());
             prop_assume!(q.degrees == factors.len());
             let value = |t: f64| factors.iter().rev().fold(0.0, |sum, factor| sum * t + factor);
             let y: Vec<f64> = tau.iter().map(|&t| value(t)).collect();

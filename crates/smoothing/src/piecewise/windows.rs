@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use crate::piecewise::polynomials::Polynomials;
+use crate::piecewise::polynomials::OrthonormalPolynomials;
 use crate::piecewise::scaled::ScaledMovement;
 
 /// Upper bound (exclusive) of the degrees of a window.
@@ -28,20 +28,22 @@ pub(crate) struct Energy {
 #[derive(Debug)]
 pub(crate) struct Bases {
     columns: usize,
-    even: Vec<Polynomials>,
+    even: Vec<OrthonormalPolynomials>,
 }
 
 impl Bases {
     /// Polynomials for windows of up to `longest` samples and degrees below `columns`.
     pub(crate) fn new(longest: usize, columns: usize) -> Self {
-        Bases { columns, even: (2..=longest).map(|samples| Polynomials::even(samples, columns)).collect() }
+        Bases { columns, even: (2..=longest).map(|samples| OrthonormalPolynomials::even(samples, columns)).collect() }
     }
 
     /// The polynomials for a window's times.
-    pub(crate) fn of(&self, movement: &ScaledMovement<'_>, window: Window) -> Cow<'_, Polynomials> {
+    pub(crate) fn of(&self, movement: &ScaledMovement<'_>, window: Window) -> Cow<'_, OrthonormalPolynomials> {
         match movement.recorded.times() {
             None => Cow::Borrowed(&self.even[window.samples - 2]),
-            Some(times) => Cow::Owned(Polynomials::at(&times[window.first..][..window.samples], self.columns)),
+            Some(times) => {
+                Cow::Owned(OrthonormalPolynomials::at(&times[window.first..][..window.samples], self.columns))
+            }
         }
     }
 }
