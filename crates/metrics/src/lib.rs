@@ -6,7 +6,7 @@
 //! - [`nupe`]: error of the unconstrained policy (A1).
 //! - [`ncpe`]: error of the policy projected through given constraints (A2).
 //! - [`nppe`], [`npoe`]: errors of estimated constraints, measured by the policy and by the velocities that they allow.
-//! - [`potential_nmse`], [`alignment_nmse`]: errors of a potential, up to a constant (A3), (A4).
+//! - [`potential_nmse`]: error of a potential, up to a constant (A3), (A4).
 //! - [`Summary`]: mean, standard deviation and median over data sets.
 //!
 //! ```
@@ -35,7 +35,7 @@ mod summary;
 
 pub use error::{MetricsError, Series};
 pub use policy::{ncpe, npoe, nppe, nupe};
-pub use potential::{alignment_nmse, potential_nmse};
+pub use potential::potential_nmse;
 pub use summary::Summary;
 
 /// Compiles the program in the README.

@@ -6,6 +6,8 @@ use crate::spread::{representable, spread};
 /// Normalised error of a learnt potential (A3): `Σ_n (f_n − φ_n − µ)² / (N σ²_φ)`, where µ is the mean of f − φ, since a
 /// potential is known up to a constant only.
 ///
+/// The error of aligned local potentials (A4) is the same, with the samples' own values φ̂ plus their trajectory's offset b in place of f.
+///
 /// `truth` φ and `learnt` f hold the potentials at N test states. `σ²_φ` is the variance (divided by N) of φ over them.
 ///
 /// # Errors
@@ -18,16 +20,6 @@ pub fn potential_nmse(truth: &DVector<f64>, learnt: &DVector<f64>) -> Result<f64
     let offset = difference.mean();
     let squares = difference.map(|d| (d - offset).powi(2));
     representable(squares.sum() / (n_samples as f64 * spread.variance))
-}
-
-/// Normalised error of aligned local potentials (A4): `Σ_n (φ̂_n + b_n − φ_n − µ)² / (N σ²_φ)`, with µ the mean of φ̂ +
-/// b − φ. It equals [`potential_nmse`] with the samples' own values φ̂ plus their trajectory's offset b in place of a
-/// model's values.
-///
-/// # Errors
-/// As [`potential_nmse`].
-pub fn alignment_nmse(truth: &DVector<f64>, aligned: &DVector<f64>) -> Result<f64, MetricsError> {
-    potential_nmse(truth, aligned)
 }
 
 /// A scalar series (N) as samples in columns, (1, N).

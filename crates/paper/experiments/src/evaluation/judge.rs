@@ -3,7 +3,7 @@
 use align::Aligned;
 use constraints::{NullSpaceProjector, PfaffianConstraint};
 use demo_gen::{Recording, Truth};
-use metrics::{alignment_nmse, ncpe, nupe, potential_nmse};
+use metrics::{ncpe, nupe, potential_nmse};
 use motion::{Policy, Potential, SampleIndex};
 use nalgebra::{DMatrix, DVector, DVectorView};
 
@@ -90,7 +90,7 @@ impl<'a> Judge<'a> {
     /// # Errors
     /// As [`Judge::potential`].
     pub fn alignment(&self, aligned: &Aligned) -> anyhow::Result<f64> {
-        Ok(alignment_nmse(&self.potential, &aligned.samples().only(&self.samples).values())?)
+        Ok(potential_nmse(&self.potential, &aligned.samples().only(&self.samples).values())?)
     }
 
     /// The actions of a policy at the test samples.
