@@ -1,14 +1,13 @@
-use motion::{Demonstrations, upper_median};
-use nalgebra::{DMatrix, DVector};
+use motion::{Demonstrations, LeastSeen, upper_median};
+use nalgebra::DMatrix;
 
 use crate::samples::noise::{each_velocity, of_velocities};
 
 /// Samples slower than this share of the median are skipped, because their direction is noise.
 const STILL: f64 = 0.01;
 
-/// Coverage of the directions of motion, and the least covered direction, (n). Coverage is n times the least eigenvalue
-/// of the mean of d dᵀ, d = u/‖u‖: 1 if all directions occur equally, and 0 if one never does.
-pub fn directions(demonstrations: &Demonstrations) -> (f64, DVector<f64>) {
+/// The direction with the least motion; its coverage is 0 if nothing moves.
+pub fn directions(demonstrations: &Demonstrations) -> LeastSeen {
     let usual = upper_median(of_velocities(demonstrations, |u| u.norm()));
     let least = STILL * usual.expect("demonstrations have samples");
     let n = demonstrations.dim();
@@ -21,9 +20,7 @@ pub fn directions(demonstrations: &Demonstrations) -> (f64, DVector<f64>) {
         }
     });
     if count == 0.0 {
-        return (0.0, DVector::zeros(n));
+        return LeastSeen { share: 0.0, direction: vec![0.0; n] };
     }
-    let eigen = (sum / count).symmetric_eigen();
-    let at = eigen.eigenvalues.imin();
-    (n as f64 * eigen.eigenvalues[at].max(0.0), eigen.eigenvectors.column(at).into_owned())
+    LeastSeen::of_mean(sum / count)
 }

@@ -4,11 +4,11 @@ pub(crate) mod auto_gp;
 pub(crate) mod numbers;
 pub(crate) mod slope_and_direct;
 
+use motion::LeastSeen;
 use serde::{Deserialize, Serialize};
 
 use crate::reading::numbers::{FreeRows, ReadingNumbers};
 use crate::report::doubt::Doubt;
-use crate::report::identifiability::LeastSeen;
 use crate::rows::kept::Grouping;
 
 /// Whether hidden constraints acted on the demonstrations (R8).

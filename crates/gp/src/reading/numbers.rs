@@ -1,4 +1,4 @@
-use motion::SampleIndex;
+use motion::{LeastSeen, SampleIndex};
 use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
 
@@ -7,7 +7,7 @@ use crate::direct::free_rows::FreeRowsFit;
 use crate::direct::model::DirectModel;
 use crate::left_out::LeftOutPredictions;
 use crate::left_out::comparison::{NEGLIGIBLE, difference, log_ratio, t_of_mean};
-use crate::report::identifiability::LeastSeen;
+use crate::report::identifiability::least_seen;
 use crate::rows::kept::Grouping;
 use crate::slope::data::SlopeData;
 use crate::slope::model::SlopeModel;
@@ -203,7 +203,7 @@ impl ReadingNumbers {
             t_lambda: t_of_mean(&log_ratios),
             p_d: 1.0 - direct.0.r_squared,
             gap: difference(slope.1, direct.1),
-            least_seen: LeastSeen::of(&data.n),
+            least_seen: least_seen(&data.n),
             hidden: (1.0 - seen / slope.1.norm_squared()).max(0.0),
             trajectories: data.targets.groups.len(),
             grouping,

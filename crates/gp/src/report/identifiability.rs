@@ -1,5 +1,6 @@
 //! Determines which directions of a policy the demonstrations identify.
 
+use motion::LeastSeen;
 use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
 
@@ -14,27 +15,6 @@ pub struct Identifiability {
     pub least: f64,
     /// The least known direction, (n).
     pub direction: Vec<f64>,
-}
-
-/// The direction with the least motion, independent of any model.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct LeastSeen {
-    /// Smallest eigenvalue of the mean of n nᵀ: 0 if nothing ever moved along its eigenvector, 1/n if all directions
-    /// were observed equally.
-    pub share: f64,
-    /// The eigenvector, (n).
-    pub direction: Vec<f64>,
-}
-
-impl LeastSeen {
-    /// Coverage below which no movement tested the policy along the direction.
-    pub const COVERED: f64 = 0.1;
-
-    /// n times the share: 1 if movements go in all directions alike, 0 if none goes along this one.
-    pub fn coverage(&self) -> f64 {
-        self.share * self.direction.len() as f64
-    }
 }
 
 impl Identifiability {
@@ -56,15 +36,7 @@ impl Identifiability {
     }
 }
 
-impl LeastSeen {
-    /// From directions of motion n, (n, M).
-    pub(crate) fn of(directions: &DMatrix<f64>) -> Self {
-        let mean = directions * directions.transpose() / directions.ncols() as f64;
-        let eigen = mean.symmetric_eigen();
-        let least = eigen.eigenvalues.imin();
-        LeastSeen {
-            share: eigen.eigenvalues[least].max(0.0),
-            direction: eigen.eigenvectors.column(least).iter().copied().collect(),
-        }
-    }
+/// The direction with the least motion among directions of motion n, (n, M).
+pub(crate) fn least_seen(directions: &DMatrix<f64>) -> LeastSeen {
+    LeastSeen::of_mean(directions * directions.transpose() / directions.ncols() as f64)
 }

@@ -1,10 +1,11 @@
+use motion::LeastSeen;
 use serde::{Deserialize, Serialize};
 
 use crate::kernel::block::Block;
 use crate::kernel::family::Family;
 use crate::left_out::is_nearly_exact;
 use crate::report::doubt::Doubt;
-use crate::report::identifiability::{Identifiability, LeastSeen};
+use crate::report::identifiability::Identifiability;
 use crate::rows::kept::{Grouping, RowsDropped};
 
 /// Reliability of a slope GP, in numbers (`docs/slope-gp.md`, section 6).

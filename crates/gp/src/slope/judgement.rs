@@ -1,6 +1,6 @@
 //! The trust report of a slope GP, with the expected error on new movements (R6), (S19).
 
-use motion::spread;
+use motion::{LeastSeen, spread};
 use nalgebra::{DMatrix, DVectorView};
 use rayon::prelude::*;
 
@@ -10,7 +10,7 @@ use crate::left_out::LeftOutPredictions;
 use crate::left_out::common_error::common_error;
 use crate::left_out::comparison::difference;
 use crate::left_out::typical::typical_mean;
-use crate::report::identifiability::{Identifiability, LeastSeen};
+use crate::report::identifiability::{Identifiability, least_seen};
 use crate::report::trust_report::{ModelKind, TrustReport};
 use crate::rows::kept::{Grouping, Kept};
 use crate::rows::thinning::every_so_many;
@@ -47,7 +47,7 @@ pub(crate) fn report(chosen: &ReportInput<'_>) -> TrustReport {
     let noise = noise(data, taken);
     let common =
         common_error(&taken.left_out, &data.n, (taken.model.noise, &data.targets.noise_weights), &data.targets.groups);
-    let least_seen = LeastSeen::of(&data.n);
+    let least_seen = least_seen(&data.n);
     let blind = kept.grouping == Grouping::BlocksOfTime || least_seen.coverage() < LeastSeen::COVERED;
     let across = if blind { CrossPathEvidence::Untested } else { *across };
     let calibration = calibration((standardised(data, taken), common), noise_share(data, taken), across);

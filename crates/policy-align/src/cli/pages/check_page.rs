@@ -1,8 +1,8 @@
 //! The page of `check`: results that are available before learning.
 
 use maud::{Markup, html};
-use motion::Trajectory;
-use nalgebra::{DVector, DVectorView};
+use motion::{LeastSeen, Trajectory};
+use nalgebra::DVectorView;
 use page::{Card, Part};
 use plot::Plane;
 use policy_align::{Prepared, StateChannel, Verdict, direction_by_channels};
@@ -24,9 +24,8 @@ const SENTENCES: [&str; 3] = [
     "Do not learn from these recordings as they are.",
 ];
 
-/// The page of recordings. `coverage`: how evenly directions are observed, and the least observed
-/// direction, (n).
-pub(crate) fn check_page(prepared: &Prepared, name: &str, coverage: (f64, &DVector<f64>)) -> String {
+/// The page of recordings.
+pub(crate) fn check_page(prepared: &Prepared, name: &str, least_seen: &LeastSeen) -> String {
     let title = format!("What was recorded in {name}");
     let data = html! {
         (counted(prepared.demonstrations.n_trajectories(), "episode")) " with "
@@ -40,7 +39,7 @@ pub(crate) fn check_page(prepared: &Prepared, name: &str, coverage: (f64, &DVect
     if prepared.state.len() >= 2 {
         parts.push(part("movements", "Movements", &movements(prepared)));
     }
-    parts.push(part("numbers", "Numbers", &numbers(prepared, coverage)));
+    parts.push(part("numbers", "Numbers", &numbers(prepared, least_seen)));
     parts.push(part("decisions", "Decisions", &decisions(&prepared.decisions)));
     let data = html! { (channels(&prepared.state)) (left_out(&prepared.left_out)) };
     parts.push(part("data", "Data", &data));
@@ -77,7 +76,7 @@ fn movements(prepared: &Prepared) -> Markup {
     Card { id: "movements", title: "Movements", caption: &caption, remark: None, svg: &svg }.under("Movements")
 }
 
-fn numbers(prepared: &Prepared, (coverage, least): (f64, &DVector<f64>)) -> Markup {
+fn numbers(prepared: &Prepared, least_seen: &LeastSeen) -> Markup {
     let noise = &prepared.noise;
     let deviation = |(channel, deviation): (&StateChannel, &f64)| {
         let what = format!("Noise of {}, standard deviation", channel.name);
@@ -92,9 +91,9 @@ fn numbers(prepared: &Prepared, (coverage, least): (f64, &DVector<f64>)) -> Mark
         velocities,
     ];
     let deviations = deviations.iter().map(|(what, value, good)| (what.as_str(), *value, *good));
-    let rows = rows.into_iter().chain(deviations).chain([(COVERAGE.0, Some(coverage), COVERAGE.1)]);
+    let rows = rows.into_iter().chain(deviations).chain([(COVERAGE.0, Some(least_seen.coverage()), COVERAGE.1)]);
     html! {
         (table(rows))
-        p { "Least observed direction: motion along " (direction_by_channels(least.as_slice(), &prepared.state)) "." }
+        p { "Least observed direction: motion along " (direction_by_channels(&least_seen.direction, &prepared.state)) "." }
     }
 }

@@ -53,9 +53,10 @@ impl Check {
         let prepared = prepare(recordings, &options).map_err(|error| Failure::prepare(&error, named(&self.files)))?;
         let refused = Verdict::worst(&prepared.findings) == Verdict::DoNotUse;
         let exit = if refused { Exit::Refused } else { Exit::Done };
-        let (coverage, direction) = directions(&prepared.demonstrations);
+        let least_seen = directions(&prepared.demonstrations);
+        let coverage = least_seen.coverage();
         if let Some(path) = &self.html {
-            let page = check_page(&prepared, &named(&self.files), (coverage, &direction));
+            let page = check_page(&prepared, &named(&self.files), &least_seen);
             write(path, page.as_bytes())?;
         }
         if session.json {
@@ -64,7 +65,7 @@ impl Check {
                 "context": prepared.context,
                 "samples": prepared.demonstrations.n_samples(), "time_step": prepared.time_step,
                 "noise": prepared.noise, "direction_coverage": coverage,
-                "least_seen": direction.as_slice(), "decisions": prepared.decisions, "findings": prepared.findings,
+                "least_seen": least_seen.direction, "decisions": prepared.decisions, "findings": prepared.findings,
             });
             return Ok(Output::json(&document, exit));
         }
