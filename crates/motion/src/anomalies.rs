@@ -5,7 +5,7 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 
 use nalgebra::DMatrix;
 
-use crate::median::upper_median;
+use crate::statistics::upper_median;
 
 /// A step longer than this many typical steps is an outlier.
 const LONG: f64 = 10.0;

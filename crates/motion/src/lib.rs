@@ -73,12 +73,10 @@ mod finding;
 mod hold_out;
 mod learner;
 mod least_seen;
-mod mean;
-mod median;
 mod policy;
 mod recordings;
 mod samples;
-mod scaled;
+mod statistics;
 mod times;
 mod trajectory;
 
@@ -88,12 +86,10 @@ pub use error::{MotionError, Series};
 pub use finding::{Decision, Finding, LeftOut, Subject, Topic, Verdict};
 pub use learner::{Certainty, LearnError, Learner, LearntPolicy};
 pub use least_seen::LeastSeen;
-pub use mean::{mean_and_error, spread, standard_deviation};
-pub use median::{median, upper_median};
 pub use policy::{NegativeGradient, Policy, Potential};
 pub use recordings::{Channel, Episode, RecordRange, Recordings, Source, is_called_context};
 pub use samples::{Labels, SampleIndex, SampleSet};
-pub use scaled::scaled;
+pub use statistics::{mean_and_error, median, scaled, spread, standard_deviation, upper_median};
 pub use times::{TimeUnit, Times, whole_step};
 pub use trajectory::Trajectory;
 

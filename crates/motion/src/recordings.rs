@@ -3,7 +3,7 @@ use std::borrow::Cow;
 use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 
-use crate::median::upper_median;
+use crate::statistics::upper_median;
 use crate::times::whole_step;
 use crate::{Finding, Labels, MotionError, Times, Trajectory};
 

@@ -3,7 +3,7 @@ use std::ops::Range;
 
 use serde::{Deserialize, Serialize};
 
-use crate::median::upper_median;
+use crate::statistics::upper_median;
 
 /// Times at which the samples of a movement were taken, in seconds.
 #[derive(Debug, Clone, PartialEq)]

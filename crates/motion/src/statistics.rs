@@ -1,4 +1,4 @@
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 
 /// Largest rounding error between equal values and their mean, relative to the mean.
 const ROUNDING: f64 = 1e-13;
@@ -27,6 +27,29 @@ pub fn standard_deviation(values: impl Iterator<Item = f64> + Clone) -> f64 {
         return 0.0;
     }
     largest * values.map(|value| ((value - mean) / largest).powi(2) / count).sum::<f64>().sqrt()
+}
+
+/// The middle value, the upper of two; `None` without values. O(N).
+pub fn upper_median(mut values: Vec<f64>) -> Option<f64> {
+    let middle = values.len() / 2;
+    (!values.is_empty()).then(|| *values.select_nth_unstable_by(middle, f64::total_cmp).1)
+}
+
+/// The middle value, or the mean of the middle two; `None` without values. O(N).
+pub fn median(mut values: Vec<f64>) -> Option<f64> {
+    let (middle, even) = (values.len() / 2, values.len().is_multiple_of(2));
+    if values.is_empty() {
+        return None;
+    }
+    let (below, &mut upper, _) = values.select_nth_unstable_by(middle, f64::total_cmp);
+    Some(if even { 0.5 * below.iter().copied().fold(f64::NEG_INFINITY, f64::max) + 0.5 * upper } else { upper })
+}
+
+/// Every row of `values`, (n, N), times its factor, (n).
+pub fn scaled(values: &DMatrix<f64>, factors: &DVector<f64>) -> DMatrix<f64> {
+    let mut values = values.clone();
+    values.column_iter_mut().for_each(|mut column| column.component_mul_assign(factors));
+    values
 }
 
 #[cfg(test)]
@@ -59,6 +82,23 @@ mod tests {
             let others: Vec<f64> = values.iter().map(|value| times * (value + by)).collect();
             let (other_mean, other_error) = mean_and_error(&others);
             prop_assert!((other_mean - times * (mean + by)).abs() < 1e-11 && (other_error - times * error).abs() < 1e-11);
+        }
+    }
+
+    #[test]
+    fn even_counts_give_the_upper_median() {
+        assert_eq!(upper_median(vec![]), None);
+        assert_eq!(upper_median(vec![7.0]), Some(7.0));
+        assert_eq!(upper_median(vec![3.0, 1.0]), Some(3.0));
+        assert_eq!(upper_median(vec![f64::INFINITY, 2.0, -1.0]), Some(2.0));
+    }
+
+    proptest! {
+        #[test]
+        fn median_is_the_middle_of_the_sorted_values(mut values in prop::collection::vec(-5.0..5.0_f64, 1..40)) {
+            let found = upper_median(values.clone());
+            values.sort_by(f64::total_cmp);
+            prop_assert_eq!(found, Some(values[values.len() / 2]));
         }
     }
 }
