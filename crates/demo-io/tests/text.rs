@@ -513,7 +513,8 @@ fn hints_without_header_can_be_followed() {
 #[test]
 fn current_positions_are_state() {
     let files = Files::new();
-    let lines: String = (0..9).map(|k| format!("{},{},{},{}\n", 0.1 * f64::from(k), k, k * k, 3 + k % 2)).collect();
+    let line = |k: i32| format!("{},{k},{},{}", 0.1 * f64::from(k), k * k, 3 + k % 2);
+    let lines = (0..9).map(line).collect::<Vec<_>>().join("\n");
     let file = files.add("a.csv", format!("t,current_pos_x,current_pos_y,motor_current\n{lines}"));
     let found = read_with(&file, &ReadOptions::default()).unwrap();
     let names: Vec<&str> = found.state.iter().map(|channel| channel.name.as_str()).collect();

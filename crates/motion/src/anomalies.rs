@@ -33,7 +33,7 @@ pub struct LongStep {
 /// Speeds may differ by more than that between start and end, and where a constraint gives way; but these do not make a
 /// single step longer than all its neighbours.
 pub fn long_steps(states: &DMatrix<f64>, times: Option<&[f64]>) -> Vec<LongStep> {
-    let seconds = times.map(|times| times.array_windows().map(|[from, to]| to - from).collect::<Vec<f64>>());
+    let seconds = times.map(|times| times.windows(2).map(|pair| pair[1] - pair[0]).collect::<Vec<f64>>());
     let usual = seconds.as_ref().and_then(|seconds| upper_median(seconds.clone()));
     let times_as_long =
         |i: usize| seconds.as_ref().zip(usual).map_or(1.0, |(seconds, usual)| (seconds[i] / usual).max(1.0));

@@ -76,8 +76,9 @@ fn glitches(series: &DMatrix<f64>, times: Option<&[f64]>) -> Vec<usize> {
         let across = distance(at - 1, at + 1);
         distance(at - 1, at).min(distance(at, at + 1)) > ALONE * across
     };
-    let pairs = long.array_windows().filter(|[out, back]| back.sample == out.sample + 1 && is_alone(back.sample));
-    let glitches: Vec<usize> = pairs.map(|[_, back]| back.sample).collect();
+    let pairs = long.windows(2).map(|pair| (pair[0].sample, pair[1].sample));
+    let glitches: Vec<usize> =
+        pairs.filter(|&(out, back)| back == out + 1 && is_alone(back)).map(|(_, back)| back).collect();
     if glitches.len() as f64 <= MOST * series.ncols() as f64 { glitches } else { Vec::new() }
 }
 

@@ -55,7 +55,7 @@ impl<'a> Beginning<'a> {
         let rises = |column: &usize| {
             let numbers: Result<Vec<f64>, _> =
                 head.iter().map(|(_, record)| dialect.fields(record).number(*column)).collect();
-            numbers.is_ok_and(|numbers| numbers.len() > 2 && numbers.array_windows().all(|[a, b]| a < b))
+            numbers.is_ok_and(|numbers| numbers.len() > 2 && numbers.windows(2).all(|pair| pair[0] < pair[1]))
         };
         [0, n - 1].into_iter().find(rises)
     }
