@@ -137,6 +137,10 @@ def test_hints_name_arguments(tmp_path) -> None:
     )
     assert hint("x,y\n1,2\n2,3\n").startswith("dt=SECONDS (the time between samples), or time= with")
     assert hint("t,x\n0,1\n0.2,2\n0.1,3\n").startswith("sort= (puts samples in the order of their stamps), or split_gap=1 if a new movement")
+    headless = "0,1,5\n0.1,2,4\n0.2,4,2\n0.3,3,1\n"
+    assert hint(headless).startswith('state="1-2", time="0" (columns count from 0')
+    (tmp_path / "demo.csv").write_text(headless)
+    assert Demonstrations.read(tmp_path / "demo.csv", state="1-2", time="0").n_samples == 4
     with pytest.raises(PolicyAlignError, match="unknown field `speed`"):
         Demonstrations.read(TOY, speed="x")
 

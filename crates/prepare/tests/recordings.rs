@@ -407,17 +407,19 @@ fn a_jump_is_cut() {
 proptest! {
     /// Single positions and velocities far from their neighbours are interpolated: nearly the recordings without them.
     #[test]
-    fn glitches_are_interpolated(at in 4..SAMPLES - 4, size in 1.0..50.0f64, of in 0..3usize) {
+    fn glitches_are_interpolated(at in 4..SAMPLES - 4, pair in any::<bool>(), size in 1.0..50.0f64, of in 0..3usize) {
         let glitch = changed(|episode| {
             if of != 1 {
                 episode.positions.column_mut(at).add_scalar_mut(size);
             }
             if of != 0 {
-                episode.velocities.as_mut().unwrap().column_mut(at).add_scalar_mut(-size);
+                let count = if pair { 2 } else { 1 };
+                episode.velocities.as_mut().unwrap().columns_mut(at, count).add_scalar_mut(-size);
             }
         });
         let found = prepared(&glitch);
-        prop_assert_eq!(verdict(&found, "far from the samples before and after"), Verdict::Good);
+        let words = if of == 1 { "unlike the steps before and after" } else { "far from the samples before and after" };
+        prop_assert_eq!(verdict(&found, words), Verdict::Good);
         prop_assert!(found.findings.iter().all(|finding| finding.verdict == Verdict::Good), "{:?}", found.findings);
         let plain = recordings();
         for (movement, episode) in found.demonstrations.trajectories().iter().zip(&plain.episodes) {
@@ -464,7 +466,7 @@ proptest! {
                 episode.positions.set_column(i, &next);
             }
         });
-        prop_assert!(!says(&self::prepared(&switch), "far from the samples"));
+        prop_assert!(!says(&self::prepared(&switch), "interpolated"));
     }
 
     /// A row of a rotation matrix beside a position is no quaternion, nor is a window that is shifted from the quaternion.

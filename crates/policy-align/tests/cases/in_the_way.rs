@@ -65,7 +65,7 @@ fn turning(seed: u64) -> Case {
 }
 
 /// A policy that rotates about z; only the first movements are constrained.
-fn few_constrained(constrained: usize, seed: u64) -> Case {
+pub(super) fn few_constrained(constrained: usize, seed: u64) -> Case {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let policy = |x: &DVector<f64>| DVector::from_vec(vec![-x[0] - 2.0 * x[1], 2.0 * x[0] - x[1], -0.5 * x[2]]);
     let movements: Vec<[DMatrix<f64>; 3]> = (0..COUNT + FRESH)

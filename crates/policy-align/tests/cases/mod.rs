@@ -1,5 +1,6 @@
 //! Recordings with their truth, good and bad, typical of laboratories.
 
+mod faulty_sensors;
 mod in_the_way;
 mod unseen;
 
@@ -554,5 +555,6 @@ pub(crate) fn all() -> Vec<Named> {
     ];
     all.extend(unseen::all());
     all.extend(in_the_way::all());
+    all.extend(faulty_sensors::all());
     all
 }

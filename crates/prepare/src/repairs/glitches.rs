@@ -1,7 +1,7 @@
 //! Glitches: single samples that are far from both neighbours.
 
 use motion::anomalies::long_steps;
-use motion::{Episode, Subject, Verdict};
+use motion::{Episode, Subject, Verdict, upper_median};
 use nalgebra::{DMatrix, DVector};
 
 use crate::notes::Notes;
@@ -10,32 +10,38 @@ use crate::numbers::{counted, percent};
 /// A glitch is further from its neighbours than this multiple of their distance.
 const ALONE: f64 = 4.0;
 /// Largest share of an episode's samples that are glitches. If there are more, something else is wrong.
-const MOST: f64 = 0.05;
-/// Velocities at a glitch contradict the positions if the interpolated ones miss the displacement by less than this share of the error.
-const CONFIRMED: f64 = 0.5;
+const MOST: f64 = 0.2;
+/// A velocity is a glitch if it contradicts the steps beside it by this multiple of the median, and of most of so many samples around it, …
+const LONG: f64 = 10.0;
+const ABOUT: usize = 7;
+/// … and by this share of the median speed.
+const SHARE: f64 = 0.2;
+/// The interpolated velocity must contradict the steps by at most this share of the recorded one's error.
+const CONFIRMED: f64 = 0.3;
 
-/// Replaces single positions and velocities that are far from both neighbours by the mean of these, and reports it.
+/// Replaces positions that are far from both neighbours, and velocities that contradict the steps before and after, by values on the straight
+/// line between the samples beside them, and reports it.
 pub(crate) fn interpolate(episodes: &mut [Episode], notes: &mut Notes) {
     let samples: usize = episodes.iter().map(Episode::n_samples).sum();
     let positions = episodes.iter_mut().map(interpolate_positions).sum();
-    report(positions, ("positions", "position"), samples, notes);
+    let far = "far from the samples before and after";
+    report((positions, samples), ("positions", "position", far), notes);
     let velocities = episodes.iter_mut().map(interpolate_velocities).sum();
-    report(velocities, ("recorded velocities", "recorded velocity"), samples, notes);
+    let unlike = "unlike the steps before and after";
+    report((velocities, samples), ("recorded velocities", "recorded velocity", unlike), notes);
 }
 
-fn report(count: usize, (many, one): (&str, &str), samples: usize, notes: &mut Notes) {
+fn report((count, samples): (usize, usize), (many, one, odd): (&str, &str, &str), notes: &mut Notes) {
     if count == 0 {
         return;
     }
     let (what, verb, them) = if count == 1 { (one, "is", "it was") } else { (many, "are", "they were") };
     let interpolated = format!("{} interpolated", counted(count, "sample"));
-    notes.decided(Subject::Jumps, interpolated, format!("{what} far from those before and after"));
+    notes.decided(Subject::Jumps, interpolated, format!("{what} {odd}"));
     let share = percent(count as f64 / samples as f64);
     notes.found(
         Verdict::Good,
-        format!(
-            "{count} {what} ({share} of the samples) {verb} far from the samples before and after; {them} interpolated"
-        ),
+        format!("{count} {what} ({share} of the samples) {verb} {odd}; {them} interpolated"),
         "check the sensor for glitches (--jumps keep)",
     );
 }
@@ -44,28 +50,56 @@ fn report(count: usize, (many, one): (&str, &str), samples: usize, notes: &mut N
 fn interpolate_positions(episode: &mut Episode) -> usize {
     let glitches = glitches(&episode.positions, episode.times.uneven());
     for &sample in &glitches {
-        let mean = between(&episode.positions, episode, sample);
+        let mean = between(&episode.positions, episode, (sample - 1, sample, sample + 1));
         episode.positions.set_column(sample, &mean);
     }
     glitches.len()
 }
 
-/// Returns the number of glitches that the positions do not confirm.
+/// Returns the number of glitches: velocities that contradict both steps beside them.
 fn interpolate_velocities(episode: &mut Episode) -> usize {
     let Some(velocities) = &episode.velocities else { return 0 };
-    let mut found = glitches(velocities, episode.times.uneven());
-    found.retain(|&sample| {
-        let mean = between(velocities, episode, sample);
-        let miss = |velocity: DVector<f64>| displacement_error(episode, velocities, sample, &velocity);
-        miss(mean) < CONFIRMED * miss(velocities.column(sample).into_owned())
-    });
-    let means: Vec<DVector<f64>> = found.iter().map(|&sample| between(velocities, episode, sample)).collect();
-    if let Some(velocities) = &mut episode.velocities {
-        for (&sample, mean) in found.iter().zip(&means) {
-            velocities.set_column(sample, mean);
-        }
+    let errors = step_errors(episode, velocities);
+    let speeds = velocities.column_iter().map(|velocity| velocity.norm()).collect();
+    let (Some(usual), Some(speed)) = (upper_median(errors.clone()), upper_median(speeds)) else { return 0 };
+    let is_glitch = |&at: &usize| {
+        let first = at.saturating_sub(ABOUT / 2).min(errors.len().saturating_sub(ABOUT));
+        let about = &errors[first..(first + ABOUT).min(errors.len())];
+        let smaller = about.iter().filter(|&&other| LONG * other < errors[at]).count();
+        errors[at] > (LONG * usual).max(SHARE * speed) && 2 * smaller > about.len()
+    };
+    let (glitches, good): (Vec<usize>, Vec<usize>) = (0..errors.len()).partition(is_glitch);
+    if glitches.is_empty() || glitches.len() as f64 > MOST * errors.len() as f64 {
+        return 0;
     }
-    found.len()
+    let mut interpolated = velocities.clone();
+    for &at in &glitches {
+        let next = good.partition_point(|&other| other < at);
+        let (before, after) = (good[next.saturating_sub(1)], good[next.min(good.len() - 1)]);
+        interpolated.set_column(at, &between(velocities, episode, (before, at, after)));
+    }
+    // Where a velocity changes fast, both contradict the steps.
+    let left = step_errors(episode, &interpolated);
+    let confirmed: Vec<usize> = glitches.into_iter().filter(|&at| left[at] < CONFIRMED * errors[at]).collect();
+    if let Some(velocities) = &mut episode.velocities {
+        confirmed.iter().for_each(|&at| velocities.set_column(at, &interpolated.column(at)));
+    }
+    confirmed.len()
+}
+
+/// For each sample the smaller difference, of the steps before and after it, between the displacement per second and the mean velocity of the
+/// step. Where a constraint switches, one of them is small.
+fn step_errors(episode: &Episode, velocities: &DMatrix<f64>) -> Vec<f64> {
+    let error = |from: usize| {
+        let displacement = episode.positions.column(from + 1) - episode.positions.column(from);
+        let mean = (velocities.column(from) + velocities.column(from + 1)) / 2.0;
+        (displacement / episode.times.seconds(from, from + 1) - mean).norm()
+    };
+    let steps: Vec<f64> = (1..episode.n_samples()).map(|to| error(to - 1)).collect();
+    let beside = |at: usize| {
+        steps[at.saturating_sub(1)..(at + 1).min(steps.len())].iter().copied().fold(f64::INFINITY, f64::min)
+    };
+    (0..episode.n_samples()).map(beside).collect()
 }
 
 /// Samples of a series (n, N) between two long steps, out and back; none if there are too many.
@@ -82,17 +116,11 @@ fn glitches(series: &DMatrix<f64>, times: Option<&[f64]>) -> Vec<usize> {
     if glitches.len() as f64 <= MOST * series.ncols() as f64 { glitches } else { Vec::new() }
 }
 
-/// The value at the time of a sample on the straight line between its neighbours.
-fn between(series: &DMatrix<f64>, episode: &Episode, sample: usize) -> DVector<f64> {
-    let whole = episode.times.seconds(sample - 1, sample + 1);
-    let share = if whole > 0.0 { episode.times.seconds(sample - 1, sample) / whole } else { 0.5 };
-    series.column(sample - 1) * (1.0 - share) + series.column(sample + 1) * share
-}
-
-/// Distance of the displacement between the neighbours of a sample from that by velocities, with `velocity` at the sample.
-fn displacement_error(episode: &Episode, velocities: &DMatrix<f64>, sample: usize, velocity: &DVector<f64>) -> f64 {
-    let [before, after] = [sample, sample + 1].map(|to| episode.times.seconds(to - 1, to));
-    let by_velocities = (velocities.column(sample - 1) + velocity) * (0.5 * before)
-        + (velocities.column(sample + 1) + velocity) * (0.5 * after);
-    (episode.positions.column(sample + 1) - episode.positions.column(sample - 1) - by_velocities).norm()
+/// The value at the time of a sample on the straight line between two others, or that of the only one.
+fn between(series: &DMatrix<f64>, episode: &Episode, (before, at, after): (usize, usize, usize)) -> DVector<f64> {
+    if before >= after {
+        return series.column(after).into_owned();
+    }
+    let share = episode.times.seconds(before, at.max(before)) / episode.times.seconds(before, after);
+    series.column(before) * (1.0 - share) + series.column(after) * share
 }
