@@ -140,7 +140,7 @@ def test_hints_name_arguments(tmp_path) -> None:
     headless = "0,1,5\n0.1,2,4\n0.2,4,2\n0.3,3,1\n"
     assert hint(headless).startswith('state="1-2", time="0" (columns count from 0')
     (tmp_path / "demo.csv").write_text(headless)
-    assert Demonstrations.read(tmp_path / "demo.csv", state="1-2", time="0").n_samples == 4
+    assert Demonstrations.read(tmp_path / "demo.csv", state="1-2", time="0").trajectories[0].shape == (4, 2)
     with pytest.raises(PolicyAlignError, match="unknown field `speed`"):
         Demonstrations.read(TOY, speed="x")
 
