@@ -130,7 +130,7 @@ pub enum Subject {
     Quaternions,
     /// Whole turns of an angle.
     Angles,
-    /// Movements that were split where they jump.
+    /// Movements that were split where they jump, and samples that were interpolated.
     Jumps,
     /// Labels of constraints that change during a movement.
     Switches,

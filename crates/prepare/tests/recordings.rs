@@ -390,6 +390,7 @@ fn a_jump_is_cut() {
     );
     assert_eq!(jump.episodes.len(), 13);
     assert_eq!((&*jump.episodes[2], &*jump.episodes[3]), ("e2", "e2 from sample 15"));
+    assert_eq!(jump.recordings(), [0, 1, 2, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11]);
     let lengths: Vec<_> = jump.demonstrations.trajectories()[2..4].iter().map(motion::Trajectory::n_samples).collect();
     assert_eq!(lengths, [15, 25]);
     // A step that takes as many times longer is no jump: samples are missing.

@@ -1,5 +1,7 @@
 //! The samples of one movement, projected onto a task space.
 
+use std::f64::consts::FRAC_PI_2;
+
 use nalgebra::{DMatrix, DVector, DVectorView};
 
 use crate::rows::task_space::TaskSpace;
@@ -92,7 +94,7 @@ impl Directions {
     pub(super) fn angle(&self, rank: usize) -> f64 {
         let of_row =
             |row: &f64| self.values[rank..].iter().map(|other| 1.0 / (other - row).max(f64::MIN_POSITIVE)).sum();
-        self.values[..rank].iter().map(of_row).fold(0.0, f64::max).sqrt()
+        self.values[..rank].iter().map(of_row).fold(0.0, f64::max).sqrt().min(FRAC_PI_2)
     }
 }
 

@@ -34,6 +34,7 @@ use crate::{DataSummary, Decision, Finding, FitError, Learnt, MadeBy, Model, Pre
 use aligning::AlignedFit;
 use decision::{digests_decision, discarded, learner_decision, rows_decision};
 use digest::{widened, with_digests};
+use halves::Halves;
 use links::LinkNames;
 
 /// Learns a policy. The same seed gives the same bits with any number of threads. The model contains neither file names nor the time, which
@@ -205,9 +206,8 @@ fn numbers(
         None if takes_slope => slope_error,
         None => of.a_d,
     };
-    let limits = halves::Limits { max_rows: options.max_rows, seed: options.seed };
-    let halves =
-        if takes_slope { halves::of_slope(readings, rows, limits) } else { halves::of_direct(readings, rows, limits) };
+    let by = Halves { max_rows: options.max_rows, seed: options.seed, recordings: &prepared.recordings() };
+    let halves = if takes_slope { halves::of_slope(readings, rows, by) } else { halves::of_direct(readings, rows, by) };
     let expected = if takes_slope { report.expected_nupe } else { readings.expected_nupe() };
     let direction_coverage = of.least_seen.coverage();
     // Parts of the same movement test how a policy continues along it, not how it behaves elsewhere. Halves test that if movements go in

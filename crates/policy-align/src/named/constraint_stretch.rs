@@ -59,7 +59,7 @@ impl ConstraintStretch {
             Acting::Constraint => self.constraint_in_words(state),
             Acting::Changing => "a constraint whose normal changes during the stretch".to_owned(),
             Acting::Nothing => "no constraint seen".to_owned(),
-            Acting::Unseen => "not observable: the policy's action is nearly 0 here".to_owned(),
+            Acting::Unseen => "not observable: the policy's action is within its uncertainty here".to_owned(),
         }
     }
 

@@ -1,4 +1,4 @@
-//! Glitches: single samples that are far from both neighbours.
+//! Glitches: positions far from both neighbours, and velocities unlike the steps beside them.
 
 use motion::anomalies::long_steps;
 use motion::{Episode, Subject, Verdict, upper_median};

@@ -63,7 +63,16 @@ fn found(finding: &Finding) -> Markup {
         Verdict::Doubtful => "Doubtful",
         Verdict::DoNotUse => "Do not use",
     };
-    html! { li { b { (label) ": " } (finding.what) ". " span .next { "Next: " (ended(&finding.next)) } } }
+    html! { li { b { (label) ": " } (with_flags(&ended(&finding.what))) " " span .next { "Next: " (with_flags(&ended(&finding.next))) } } }
+}
+
+/// A sentence whose flags are not broken at the end of a line, after a hyphen.
+fn with_flags(sentence: &str) -> Markup {
+    html! {
+        @for word in sentence.split_inclusive(' ') {
+            @if word.contains("--") { span .flag { (word.trim_end()) } @if word.ends_with(' ') { " " } } @else { (word) }
+        }
+    }
 }
 
 /// A table. In a narrow window each row becomes a block with the column's name in each cell.
