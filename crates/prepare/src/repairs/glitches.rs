@@ -82,7 +82,9 @@ fn interpolate_velocities(episode: &mut Episode) -> usize {
     let left = step_errors(episode, &interpolated);
     let confirmed: Vec<usize> = glitches.into_iter().filter(|&at| left[at] < CONFIRMED * errors[at]).collect();
     if let Some(velocities) = &mut episode.velocities {
-        confirmed.iter().for_each(|&at| velocities.set_column(at, &interpolated.column(at)));
+        for &at in &confirmed {
+            velocities.set_column(at, &interpolated.column(at));
+        }
     }
     confirmed.len()
 }
