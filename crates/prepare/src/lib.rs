@@ -112,7 +112,7 @@ pub fn prepare<'a>(
     }
     notes.findings.extend(findings::odd_channels(&episodes, &state_channels));
     if options.jumps == Repair::Auto {
-        repairs::glitches::interpolate(&mut episodes, &mut notes);
+        repairs::glitches::interpolate(&mut episodes, &state_channels, &mut notes);
         repairs::jumps::cut(&mut episodes, &state_channels, &mut notes);
     }
     repairs::episodes::leave_out_still(&mut episodes, &mut notes);

@@ -1,11 +1,11 @@
 //! Glitches: positions far from both neighbours, and velocities unlike the steps beside them.
 
 use motion::anomalies::long_steps;
-use motion::{Episode, Subject, Verdict, upper_median};
+use motion::{Channel, Episode, Subject, Verdict, upper_median};
 use nalgebra::{DMatrix, DVector};
 
 use crate::notes::Notes;
-use crate::numbers::{counted, percent};
+use crate::numbers::{counted, percent, short};
 
 /// A glitch is further from its neighbours than this multiple of their distance.
 const ALONE: f64 = 4.0;
@@ -21,47 +21,67 @@ const CONFIRMED: f64 = 0.3;
 
 /// Replaces positions that are far from both neighbours, and velocities that contradict the steps before and after, by values on the straight
 /// line between the samples beside them, and reports it.
-pub(crate) fn interpolate(episodes: &mut [Episode], notes: &mut Notes) {
-    let samples: usize = episodes.iter().map(Episode::n_samples).sum();
-    let positions = episodes.iter_mut().map(interpolate_positions).sum();
-    let far = "far from the samples before and after";
-    report((positions, samples), ("positions", "position", far), notes);
-    let velocities = episodes.iter_mut().map(interpolate_velocities).sum();
-    let unlike = "unlike the steps before and after";
-    report((velocities, samples), ("recorded velocities", "recorded velocity", unlike), notes);
+pub(crate) fn interpolate(episodes: &mut [Episode], channels: &[Channel], notes: &mut Notes) {
+    let far = ["positions are", "position is"].map(|what| format!("{what} far from the samples before and after"));
+    let unlike = ["recorded velocities are", "recorded velocity is"]
+        .map(|what| format!("{what} unlike the steps before and after"));
+    report(episodes, interpolate_positions, (&far, channels), notes);
+    report(episodes, interpolate_velocities, (&unlike, channels), notes);
 }
 
-fn report((count, samples): (usize, usize), (many, one, odd): (&str, &str, &str), notes: &mut Notes) {
-    if count == 0 {
-        return;
+/// An interpolated sample, and the difference of the recorded value from it, (n).
+type Glitch = (usize, DVector<f64>);
+
+fn report(
+    episodes: &mut [Episode],
+    interpolate: impl Fn(&mut Episode) -> Vec<Glitch>,
+    ([many, one], channels): (&[String; 2], &[Channel]),
+    notes: &mut Notes,
+) {
+    let (mut count, mut samples, mut first) = (0, 0, None);
+    for episode in episodes {
+        let glitches = interpolate(episode);
+        (count, samples) = (count + glitches.len(), samples + episode.n_samples());
+        if let (None, Some((sample, off))) = (&first, glitches.first()) {
+            first = Some(format!(
+                "{}: '{}' by {}",
+                episode.place(*sample),
+                channels[off.icamax()].name,
+                short(off[off.icamax()])
+            ));
+        }
     }
-    let (what, verb, them) = if count == 1 { (one, "is", "it was") } else { (many, "are", "they were") };
-    let interpolated = format!("{} interpolated", counted(count, "sample"));
-    notes.decided(Subject::Jumps, interpolated, format!("{what} {odd}"));
+    let Some(first) = first else { return };
+    let (what, them) = if count == 1 { (one, "it was") } else { (many, "they were") };
     let share = percent(count as f64 / samples as f64);
+    notes.decided(Subject::Jumps, format!("{} interpolated", counted(count, "sample")), format!("{count} {what}"));
     notes.found(
         Verdict::Good,
-        format!("{count} {what} ({share} of the samples) {verb} {odd}; {them} interpolated"),
+        format!("{count} {what} ({share} of the samples; {first}); {them} interpolated"),
         "check the sensor for glitches (--jumps keep)",
     );
 }
 
-/// Returns the number of glitches.
-fn interpolate_positions(episode: &mut Episode) -> usize {
-    let glitches = glitches(&episode.positions, episode.times.uneven());
-    for &sample in &glitches {
+/// Positions that are far from both neighbours.
+fn interpolate_positions(episode: &mut Episode) -> Vec<Glitch> {
+    let found = glitches(&episode.positions, episode.times.uneven());
+    let interpolate = |sample: usize| {
         let mean = between(&episode.positions, episode, (sample - 1, sample, sample + 1));
+        let off = episode.positions.column(sample) - &mean;
         episode.positions.set_column(sample, &mean);
-    }
-    glitches.len()
+        (sample, off)
+    };
+    found.into_iter().map(interpolate).collect()
 }
 
-/// Returns the number of glitches: velocities that contradict both steps beside them.
-fn interpolate_velocities(episode: &mut Episode) -> usize {
-    let Some(velocities) = &episode.velocities else { return 0 };
+/// Velocities that contradict both steps beside them.
+fn interpolate_velocities(episode: &mut Episode) -> Vec<Glitch> {
+    let Some(velocities) = &episode.velocities else { return Vec::new() };
     let errors = step_errors(episode, velocities);
     let speeds = velocities.column_iter().map(|velocity| velocity.norm()).collect();
-    let (Some(usual), Some(speed)) = (upper_median(errors.clone()), upper_median(speeds)) else { return 0 };
+    let (Some(usual), Some(speed)) = (upper_median(errors.clone()), upper_median(speeds)) else {
+        return Vec::new();
+    };
     let is_glitch = |&at: &usize| {
         let first = at.saturating_sub(ABOUT / 2).min(errors.len().saturating_sub(ABOUT));
         let about = &errors[first..(first + ABOUT).min(errors.len())];
@@ -70,7 +90,7 @@ fn interpolate_velocities(episode: &mut Episode) -> usize {
     };
     let (glitches, good): (Vec<usize>, Vec<usize>) = (0..errors.len()).partition(is_glitch);
     if glitches.is_empty() || glitches.len() as f64 > MOST * errors.len() as f64 {
-        return 0;
+        return Vec::new();
     }
     let mut interpolated = velocities.clone();
     for &at in &glitches {
@@ -80,13 +100,15 @@ fn interpolate_velocities(episode: &mut Episode) -> usize {
     }
     // Where a velocity changes fast, both contradict the steps.
     let left = step_errors(episode, &interpolated);
-    let confirmed: Vec<usize> = glitches.into_iter().filter(|&at| left[at] < CONFIRMED * errors[at]).collect();
+    let off = |at: usize| (at, velocities.column(at) - interpolated.column(at));
+    let confirmed: Vec<Glitch> =
+        glitches.into_iter().filter(|&at| left[at] < CONFIRMED * errors[at]).map(off).collect();
     if let Some(velocities) = &mut episode.velocities {
-        for &at in &confirmed {
-            velocities.set_column(at, &interpolated.column(at));
+        for (at, _) in &confirmed {
+            velocities.set_column(*at, &interpolated.column(*at));
         }
     }
-    confirmed.len()
+    confirmed
 }
 
 /// For each sample the smaller difference, of the steps before and after it, between the displacement per second and the mean velocity of the
