@@ -152,7 +152,7 @@ def test_findings_and_decisions_name_arguments() -> None:
     recordings = Demonstrations(wrapped, dt=DT, channels=["angle", "x"])
     check = recordings.check()
     advice = next(finding.next for finding in check.findings if "whole turn" in finding.what)
-    assert 'choose the angles yourself (wraps="keep" unwrap=NAMES)' in advice
+    assert 'choose the angles yourself (wraps="keep", unwrap=NAMES)' in advice
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         model = SlopeGp(max_rows=60).fit(recordings)
