@@ -45,14 +45,16 @@ pub fn long_steps(states: &DMatrix<f64>, times: Option<&[f64]>) -> Vec<LongStep>
     let Some(usual) = upper_median(steps.iter().copied().filter(|&step| step > 0.0).collect()) else {
         return Vec::new();
     };
-    let stands_out = |&i: &usize| {
-        let first = i.saturating_sub(ABOUT / 2).min(steps.len().saturating_sub(ABOUT));
-        let about = &steps[first..(first + ABOUT).min(steps.len())];
-        let shorter = about.iter().filter(|&&other| LONG * other < steps[i]).count();
-        steps[i] > LONG * usual && 2 * shorter > about.len()
-    };
-    let long = (0..steps.len()).filter(stands_out);
+    let long = (0..steps.len()).filter(|&i| stands_out(&steps, i, usual));
     long.map(|sample| LongStep { sample, times: steps[sample] / usual }).collect()
+}
+
+/// Whether a value is over ten times the `usual` one, and over ten times most of the seven values around it.
+pub fn stands_out(values: &[f64], at: usize, usual: f64) -> bool {
+    let first = at.saturating_sub(ABOUT / 2).min(values.len().saturating_sub(ABOUT));
+    let about = &values[first..(first + ABOUT).min(values.len())];
+    let smaller = about.iter().filter(|&&other| LONG * other < values[at]).count();
+    values[at] > LONG * usual && 2 * smaller > about.len()
 }
 
 /// For each movement (n, N_k), the first earlier one with the same states, if any. O(M) for M samples.

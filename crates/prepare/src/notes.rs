@@ -25,6 +25,11 @@ impl Notes {
 /// Text between the name of an episode and the first sample in the name of a piece that was cut from it.
 pub(crate) const PIECE: &str = " from sample ";
 
+/// The name of the episode that a piece was cut from, or of a whole one.
+pub(crate) fn name_of_whole(name: &str) -> &str {
+    name.split(PIECE).next().unwrap_or(name)
+}
+
 /// "" for one, " (and 3 more)" for four.
 pub(crate) fn and_more(count: usize) -> String {
     if count > 1 { format!(" (and {} more)", count - 1) } else { String::new() }

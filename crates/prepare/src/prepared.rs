@@ -1,7 +1,7 @@
 use motion::{Decision, Demonstrations, Finding, LeftOut, MotionError, Trajectory};
 use nalgebra::DVector;
 
-use crate::notes::PIECE;
+use crate::notes::{PIECE, name_of_whole};
 use crate::options::Smoothing;
 use crate::samples::noise::{self, Noise};
 use crate::{StateChannel, VelocitySource, findings};
@@ -43,9 +43,9 @@ impl Prepared {
     /// For each movement, (K), the number of the recording that it is a part of: episodes that were split at jumps have several. If there is
     /// only one recording, its parts count as recordings.
     pub fn recordings(&self) -> Vec<usize> {
-        let whole = |name: &str| name.split(PIECE).next().unwrap_or_default().to_owned();
         let names = &self.episodes;
-        let continues = |at: usize| names[at].contains(PIECE) && whole(&names[at]) == whole(&names[at - 1]);
+        let continues =
+            |at: usize| names[at].contains(PIECE) && name_of_whole(&names[at]) == name_of_whole(&names[at - 1]);
         let mut count = 0;
         let number = |at: usize| {
             count += usize::from(at > 0 && !continues(at));

@@ -3,7 +3,7 @@
 use motion::{Episode, Finding, standard_deviation, upper_median};
 use nalgebra::DVector;
 
-use crate::notes::PIECE;
+use crate::notes::name_of_whole;
 use crate::numbers::counted;
 
 /// Sizes of movements in one unit leave no gap as large as this factor …
@@ -28,7 +28,7 @@ const FACTORS: [(f64, &str); 3] =
 /// `scales`: the factor of each channel, (n).
 pub(crate) fn other_units(episodes: &[Episode], scales: &DVector<f64>) -> Option<Finding> {
     // An episode that was cut is as large as its largest piece. Pieces have its name.
-    let name = |episode: &Episode| episode.name.split(PIECE).next().unwrap_or("").to_owned();
+    let name = |episode: &Episode| name_of_whole(&episode.name).to_owned();
     let recorded = episodes.chunk_by(|a, b| name(a) == name(b));
     let largest = |pieces: &[Episode]| pieces.iter().map(|piece| size(piece, scales)).fold(0.0, f64::max);
     let each: Vec<(String, f64)> = recorded.map(|pieces| (name(&pieces[0]), largest(pieces))).collect();
@@ -87,6 +87,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
+    use crate::notes::PIECE;
 
     /// Movements towards the origin from starts at distances from 0.2 to 2, each multiplied by a factor.
     fn episodes(factors: &[f64], seed: f64) -> Vec<Episode> {

@@ -1,6 +1,6 @@
 //! Glitches: positions far from both neighbours, and velocities unlike the steps beside them.
 
-use motion::anomalies::long_steps;
+use motion::anomalies::{long_steps, stands_out};
 use motion::{Channel, Episode, Subject, Verdict, upper_median};
 use nalgebra::{DMatrix, DVector};
 
@@ -11,10 +11,7 @@ use crate::numbers::{counted, percent, short};
 const ALONE: f64 = 4.0;
 /// Largest share of an episode's samples that are glitches. If there are more, something else is wrong.
 const MOST: f64 = 0.2;
-/// A velocity is a glitch if it contradicts the steps beside it by this multiple of the median, and of most of so many samples around it, …
-const LONG: f64 = 10.0;
-const ABOUT: usize = 7;
-/// … and by this share of the median speed.
+/// A velocity is a glitch if it contradicts the steps beside it by this share of the median speed.
 const SHARE: f64 = 0.2;
 /// The interpolated velocity must contradict the steps by at most this share of the recorded one's error.
 const CONFIRMED: f64 = 0.3;
@@ -25,14 +22,15 @@ pub(crate) fn interpolate(episodes: &mut [Episode], channels: &[Channel], notes:
     let far = ["positions are", "position is"].map(|what| format!("{what} far from the samples before and after"));
     let unlike = ["recorded velocities are", "recorded velocity is"]
         .map(|what| format!("{what} unlike the steps before and after"));
-    report(episodes, interpolate_positions, (&far, channels), notes);
-    report(episodes, interpolate_velocities, (&unlike, channels), notes);
+    repair(episodes, interpolate_positions, (&far, channels), notes);
+    repair(episodes, interpolate_velocities, (&unlike, channels), notes);
 }
 
 /// An interpolated sample, and the difference of the recorded value from it, (n).
 type Glitch = (usize, DVector<f64>);
 
-fn report(
+/// Interpolates the glitches of all episodes, and reports their number and the first one.
+fn repair(
     episodes: &mut [Episode],
     interpolate: impl Fn(&mut Episode) -> Vec<Glitch>,
     ([many, one], channels): (&[String; 2], &[Channel]),
@@ -82,12 +80,7 @@ fn interpolate_velocities(episode: &mut Episode) -> Vec<Glitch> {
     let (Some(usual), Some(speed)) = (upper_median(errors.clone()), upper_median(speeds)) else {
         return Vec::new();
     };
-    let is_glitch = |&at: &usize| {
-        let first = at.saturating_sub(ABOUT / 2).min(errors.len().saturating_sub(ABOUT));
-        let about = &errors[first..(first + ABOUT).min(errors.len())];
-        let smaller = about.iter().filter(|&&other| LONG * other < errors[at]).count();
-        errors[at] > (LONG * usual).max(SHARE * speed) && 2 * smaller > about.len()
-    };
+    let is_glitch = |&at: &usize| errors[at] > SHARE * speed && stands_out(&errors, at, usual);
     let (glitches, good): (Vec<usize>, Vec<usize>) = (0..errors.len()).partition(is_glitch);
     if glitches.is_empty() || glitches.len() as f64 > MOST * errors.len() as f64 {
         return Vec::new();
@@ -115,9 +108,13 @@ fn interpolate_velocities(episode: &mut Episode) -> Vec<Glitch> {
 /// step. Where a constraint switches, one of them is small.
 fn step_errors(episode: &Episode, velocities: &DMatrix<f64>) -> Vec<f64> {
     let error = |from: usize| {
-        let displacement = episode.positions.column(from + 1) - episode.positions.column(from);
-        let mean = (velocities.column(from) + velocities.column(from + 1)) / 2.0;
-        (displacement / episode.times.seconds(from, from + 1) - mean).norm()
+        let seconds = episode.times.seconds(from, from + 1);
+        let of_axis = |axis: usize| {
+            let displacement = episode.positions[(axis, from + 1)] - episode.positions[(axis, from)];
+            let mean = f64::midpoint(velocities[(axis, from)], velocities[(axis, from + 1)]);
+            (displacement / seconds - mean).powi(2)
+        };
+        (0..velocities.nrows()).map(of_axis).sum::<f64>().sqrt()
     };
     let steps: Vec<f64> = (1..episode.n_samples()).map(|to| error(to - 1)).collect();
     let beside = |at: usize| {
@@ -145,6 +142,6 @@ fn between(series: &DMatrix<f64>, episode: &Episode, (before, at, after): (usize
     if before >= after {
         return series.column(after).into_owned();
     }
-    let share = episode.times.seconds(before, at.max(before)) / episode.times.seconds(before, after);
+    let share = episode.times.seconds(before, at) / episode.times.seconds(before, after);
     series.column(before) * (1.0 - share) + series.column(after) * share
 }

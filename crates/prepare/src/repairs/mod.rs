@@ -1,5 +1,6 @@
 //! Repairs of faulty recordings.
 
+pub(crate) mod displacements;
 pub(crate) mod duplicates;
 pub(crate) mod episodes;
 pub(crate) mod glitches;

@@ -32,10 +32,8 @@ pub(crate) fn align(episodes: &mut [Episode], channels: &[Channel], repair: Repa
 /// The first channel of each quaternion, in order. Of overlapping windows the one counts whose norm is nearest to 1.
 fn quaternions(episodes: &[Episode], n_channels: usize) -> Vec<usize> {
     let windows = 0..(n_channels + 1).saturating_sub(4);
-    let mut candidates: Vec<(f64, usize)> = windows
-        .filter(|&first| is_quaternion(episodes, first))
-        .map(|first| (deviation(episodes, first, None), first))
-        .collect();
+    let mut candidates: Vec<(f64, usize)> =
+        windows.filter_map(|first| Some((deviation_of_quaternion(episodes, first)?, first))).collect();
     candidates.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut found: Vec<usize> = Vec::new();
     for (_, first) in candidates {
@@ -73,18 +71,22 @@ fn report_signs(names: &str, flips: usize, notes: &mut Notes) {
     );
 }
 
-/// Whether four channels have norm 1 throughout, up to noise, and move.
-fn is_quaternion(episodes: &[Episode], first: usize) -> bool {
+/// The deviation of four channels whose norm is 1 throughout, up to noise, and that move; `None` for others.
+fn deviation_of_quaternion(episodes: &[Episode], first: usize) -> Option<f64> {
     let moves = episodes.iter().any(|episode| {
         let part = episode.positions.rows(first, 4);
         part.column_iter().any(|q| q != part.column(0))
     });
     let columns = || episodes.iter().flat_map(|episode| episode.positions.column_iter());
     let is_unit = |q: DVectorView<'_, f64>| (q.rows(first, 4).norm() - 1.0).abs() <= UNIT;
-    let needless = |at: usize| deviation(episodes, first, Some(at)) < NEEDLESS * deviation(episodes, first, None);
-    moves
-        && (columns().all(is_unit) || is_noisy_quaternion(columns().map(|x| x.fixed_rows::<4>(first).into_owned())))
-        && !(0..4).any(needless)
+    let is_quaternion = moves
+        && (columns().all(is_unit) || is_noisy_quaternion(columns().map(|x| x.fixed_rows::<4>(first).into_owned())));
+    if !is_quaternion {
+        return None;
+    }
+    let of_four = deviation(episodes, first, None);
+    let needless = |at: usize| deviation(episodes, first, Some(at)) < NEEDLESS * of_four;
+    (!(0..4).any(needless)).then_some(of_four)
 }
 
 fn is_noisy_quaternion(all: impl Iterator<Item = Vector4<f64>> + Clone) -> bool {

@@ -4,6 +4,7 @@ use nalgebra::DVector;
 use crate::notes::Notes;
 use crate::numbers::{percent, short};
 use crate::options::{PrepareOptions, VelocityUse};
+use crate::repairs::displacements::{Part, displacements};
 use crate::repairs::stamps::{SLOW, UNITS, usual_step};
 use crate::repairs::velocity_origin::VelocityOrigin;
 use crate::repairs::{lag, velocity_offset};
@@ -101,12 +102,15 @@ pub(crate) fn decide(
 /// Subtracts a constant from the velocities if they then agree with the steps much better than in any unit; returns it and the new fit.
 fn without_offset(episodes: &mut [Episode], fit: &Steps, noise: &Noise) -> Option<(DVector<f64>, Steps)> {
     let offset = velocity_offset::of(episodes)?;
-    velocity_offset::add(episodes, &-&offset);
+    let recorded: Vec<_> = episodes.iter().map(|episode| episode.velocities.clone()).collect();
+    velocity_offset::subtract(episodes, &offset);
     let without = Steps::of(episodes, noise);
     if without.agree(1.0) && 1.0 - without.explained < OFFSET * (1.0 - fit.explained) {
         return Some((offset, without));
     }
-    velocity_offset::add(episodes, &offset);
+    for (episode, recorded) in episodes.iter_mut().zip(recorded) {
+        episode.velocities = recorded;
+    }
     None
 }
 
@@ -116,9 +120,6 @@ fn discard(episodes: &mut [Episode]) {
         episode.velocities = None;
     }
 }
-
-/// A part of a movement: its step D, and S = Σ u δt, the step computed from its velocities; both (n).
-type Part = (DVector<f64>, DVector<f64>);
 
 /// Factors between steps and steps computed from velocities, over parts of movements: Σ D S / Σ S² in each channel, S = Σ
 /// u δt.
@@ -168,15 +169,7 @@ fn parts(episode: &Episode) -> Vec<Part> {
     let parts = PARTS.min((steps / 2).max(1));
     let Some(velocities) = &episode.velocities else { return Vec::new() };
     (0..parts)
-        .map(|part| {
-            let (from, to) = (part * steps / parts, (part + 1) * steps / parts);
-            let moved = episode.positions.column(to) - episode.positions.column(from);
-            let mut integral = DVector::zeros(moved.len());
-            for i in from..to {
-                integral += (velocities.column(i) + velocities.column(i + 1)) * (0.5 * episode.times.seconds(i, i + 1));
-            }
-            (moved, integral)
-        })
+        .map(|part| displacements(episode, velocities, part * steps / parts..(part + 1) * steps / parts))
         .collect()
 }
 

@@ -5,6 +5,7 @@ use nalgebra::DVector;
 
 use crate::notes::Notes;
 use crate::numbers::short;
+use crate::repairs::displacements::displacements;
 
 /// Minimum number of movements.
 const LEAST: usize = 5;
@@ -34,10 +35,10 @@ pub(super) fn of(episodes: &[Episode]) -> Option<DVector<f64>> {
     (offset.amax() > 0.0).then_some(offset)
 }
 
-/// Adds a constant to all velocities.
-pub(super) fn add(episodes: &mut [Episode], constant: &DVector<f64>) {
+/// Subtracts it from all velocities.
+pub(super) fn subtract(episodes: &mut [Episode], offset: &DVector<f64>) {
     for velocities in episodes.iter_mut().filter_map(|episode| episode.velocities.as_mut()) {
-        velocities.column_iter_mut().for_each(|mut velocity| velocity += constant);
+        velocities.column_iter_mut().for_each(|mut velocity| velocity -= offset);
     }
 }
 
@@ -60,9 +61,6 @@ fn excess(episode: &Episode) -> Option<DVector<f64>> {
     if seconds <= 0.0 {
         return None;
     }
-    let mut integral = DVector::zeros(velocities.nrows());
-    for i in 0..last {
-        integral += (velocities.column(i) + velocities.column(i + 1)) * (0.5 * episode.times.seconds(i, i + 1));
-    }
-    Some((integral - (episode.positions.column(last) - episode.positions.column(0))) / seconds)
+    let (moved, integral) = displacements(episode, velocities, 0..last);
+    Some((integral - moved) / seconds)
 }
